@@ -1,0 +1,85 @@
+/* Memory that is there or the run stops: see array.h. */
+#include "base/array.h"
+
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/mman.h>
+
+#include "base/report.h"
+
+enum { CACHE_LINE = 64, HUGE_PAGE = 2 * 1024 * 1024 };
+
+static size_t checked_bytes(size_t n, size_t size)
+{
+    CHECK(size == 0 || n <= SIZE_MAX / 4 / size, "%zu elements of %zu bytes asked for", n, size);
+    return n * size;
+}
+
+void *array_allocate(size_t n, size_t size)
+{
+    void *memory = calloc(n > 0 ? n : 1, size > 0 ? size : 1);
+    CHECK(memory != NULL, "out of memory: %zu bytes asked for", checked_bytes(n, size));
+    return memory;
+}
+
+void *array_allocate_rows(size_t n, size_t size)
+{
+    const size_t bytes = checked_bytes(n, size);
+    const size_t alignment = bytes >= HUGE_PAGE ? HUGE_PAGE : CACHE_LINE;
+    const size_t padded = (bytes / alignment + 1) * alignment;
+    void *memory = aligned_alloc(alignment, padded);
+    CHECK(memory != NULL, "out of memory: %zu bytes asked for", padded);
+    if (bytes >= HUGE_PAGE)
+        (void)madvise(memory, padded, MADV_HUGEPAGE); /* advice: its failure changes only speed */
+    memset(memory, 0, padded);
+    return memory;
+}
+
+void *array_resize(void *old, size_t n_old, size_t n, size_t size)
+{
+    char *memory = realloc(old, checked_bytes(n > 0 ? n : 1, size));
+    CHECK(memory != NULL, "out of memory: %zu bytes asked for", n * size);
+    if (n > n_old)
+        memset(memory + n_old * size, 0, (n - n_old) * size);
+    return memory;
+}
+
+void *array_resize_rows(void *old, size_t n_old, size_t n, size_t size)
+{
+    void *memory = array_allocate_rows(n, size);
+    if (old != NULL)
+        memcpy(memory, old, (n_old < n ? n_old : n) * size);
+    free(old);
+    return memory;
+}
+
+char *array_string(const char *text)
+{
+    const size_t length = strlen(text);
+    char *copy = array_allocate(length + 1, 1);
+    memcpy(copy, text, length);
+    return copy;
+}
+
+char *array_format(const char *format, ...)
+{
+    va_list arguments, copy;
+    va_start(arguments, format);
+    va_copy(copy, arguments);
+    const int length = vsnprintf(NULL, 0, format, arguments);
+    CHECK(length >= 0, "cannot format %s", format);
+    char *text = array_allocate((size_t)length + 1, 1);
+    vsnprintf(text, (size_t)length + 1, format, copy);
+    va_end(copy);
+    va_end(arguments);
+    return text;
+}
+
+size_t array_capacity(size_t capacity, size_t needed)
+{
+    const size_t grown = capacity + capacity / 4 + 16;
+    return grown > needed ? grown : needed;
+}

@@ -1,0 +1,175 @@
+/*
+ * What the user asked for: a job file, read, checked and completed with defaults.
+ *
+ * The schema table (job/schema) is the one description of every key; this struct is what it fills.
+ * Everything is in SI units here.  Indices refer to the arrays of this struct.
+ */
+#ifndef TREMIE_JOB_JOB_H
+#define TREMIE_JOB_JOB_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/vec3.h"
+
+struct mistakes;
+
+struct job_material {
+    char *name;
+    double density; /* [kg/m3] */
+    double young;   /* [Pa] */
+    double poisson; /* [-] */
+};
+
+/* Contact between two materials; a <= b.  Every pair that can meet has one. */
+struct job_pair {
+    int a, b;
+    double friction;    /* Coulomb coefficient [-] */
+    double restitution; /* [-], what comes out, whatever the law */
+};
+
+enum job_packing { JOB_PACKING_LATTICE, JOB_PACKING_CSV };
+
+/* A group of spheres.  Ids run through the groups in the order of the file. */
+struct job_spheres {
+    char *name;
+    int material;
+    double radius;        /* [m]; for CSV without a radius column */
+    struct vec3 velocity; /* initial [m/s] */
+    struct vec3 spin;     /* initial angular velocity [rad/s] */
+    enum job_packing packing;
+    /* Lattice: `count` places in rows along x, then y, then layers along z, `spacing` apart; a layer
+     * covers size[0] x size[1] from the corner (the least coordinates of sphere *surfaces*). */
+    int64_t count;
+    double spacing; /* [m] */
+    struct vec3 corner;
+    double size[2]; /* [m] */
+    /* CSV with a header line that names columns: x_m,y_m,z_m and optionally radius_m, material,
+     * vx_m_s,vy_m_s,vz_m_s (resolved relative to the job file). */
+    char *file;
+};
+
+enum job_geometry { JOB_GEOMETRY_PLANE, JOB_GEOMETRY_BOX, JOB_GEOMETRY_HOPPER, JOB_GEOMETRY_MESH };
+
+enum job_side { /* sides of a box that are left open */
+    JOB_SIDE_X_MIN = 1,
+    JOB_SIDE_X_MAX = 2,
+    JOB_SIDE_Y_MIN = 4,
+    JOB_SIDE_Y_MAX = 8,
+    JOB_SIDE_BOTTOM = 16,
+    JOB_SIDE_TOP = 32,
+};
+
+/* A rigid body: a surface of quads and triangles that moves as prescribed. */
+struct job_body {
+    char *name;
+    int material;
+    enum job_geometry geometry;
+    struct vec3 point, normal; /* plane: a square facet through `point`, facing `normal` */
+    double extent;             /* plane: edge of the square [m] */
+    struct vec3 min, max;      /* box */
+    int open;                  /* box: sides left open, a set of enum job_side */
+    double top[2], outlet[2];  /* hopper: openings, width along x and y [m] */
+    double z[2];               /* hopper: heights of outlet and top [m] */
+    double centre[2];          /* hopper: axis, x and y [m] */
+    int n_vertices;            /* mesh */
+    struct vec3 *vertices;     /* [m] */
+    int n_facets;
+    int (*facets)[4];          /* vertex indices; a triangle has -1 last */
+    /* Motion: x(t) = pivot + R(rate t about axis) (x(0) - pivot) + velocity t, within [start, stop]. */
+    struct vec3 velocity;      /* [m/s] */
+    struct vec3 pivot, axis;   /* axis has length 1, or 0 where nothing rotates */
+    double rate;               /* angular velocity about the axis [rad/s] */
+    double start, stop;        /* [s]; stop is infinite by default */
+};
+
+/* A plane that counts what passes; forward is along the normal. */
+struct job_section {
+    char *name;
+    struct vec3 point, normal; /* the normal has length 1 */
+};
+
+enum job_leavers { JOB_LEAVERS_STOP, JOB_LEAVERS_REMOVE, JOB_LEAVERS_IGNORE };
+enum job_weights { JOB_WEIGHTS_CONTACTS, JOB_WEIGHTS_CANDIDATES };
+enum job_search { JOB_SEARCH_AUTO, JOB_SEARCH_ALL_PAIRS };
+
+struct job {
+    char *path;  /* the job file */
+    char *name;  /* its file name without folder and ending: names the run folder */
+    char *title;
+    struct {
+        double end;    /* [s]; a whole number of steps */
+        double step;   /* [s]; 0 means auto */
+        double safety; /* step: auto takes this share of the critical step */
+    } time;
+    struct vec3 gravity; /* [m/s2] */
+    double damping;      /* mass-proportional: force = -damping * m * v [1/s] */
+    int n_materials, n_pairs, n_spheres, n_bodies, n_sections;
+    struct job_material *materials;
+    struct job_pair *pairs;
+    struct job_spheres *spheres;
+    struct job_body *bodies;
+    struct job_section *sections; /* at most 60 */
+    bool energy_ledger;           /* contact.ledger: on by default */
+    struct {
+        bool given;           /* else: the extent of the scene, grown by its size */
+        struct vec3 min, max; /* [m] */
+        enum job_leavers leavers;
+    } domain;
+    struct {
+        double buffer;    /* width of the buffer zone [m]; 0 means auto (half the mean radius) */
+        double imbalance; /* largest over mean time that repartitions */
+        enum job_weights weights;
+        int fixed[3];     /* a fixed grid of subdomains, {0, 0, 0} when balanced */
+    } decomposition;
+    struct { /* for tests of the bits: none of these may change a result */
+        enum job_search search;
+        int64_t search_every;        /* steps; 0: only when due */
+        int64_t redistribute_every;  /* high level forced every so many steps; 0: never */
+        int64_t repartition_every;   /* low level forced likewise */
+    } force;
+    struct {
+        double every_wall;    /* [s]; 0: never */
+        int64_t every_steps;  /* 0: never */
+        int keep;
+    } checkpoint;
+    struct {
+        double series_every; /* [s]; a whole number of steps */
+    } output;
+    struct {
+        double overlap; /* largest overlap over radius that a run tolerates [-] */
+        double motion;  /* largest motion in one step over radius [-] */
+        double energy;  /* largest balance error over the energy turned over; 0: not watched */
+    } watch;
+    int64_t order_every; /* M: steps between renewals of the canonical order (DESIGN: order) */
+};
+
+/* One `--set key=value` of the command line; key is a dotted path (spheres.0.radius counts lists). */
+struct job_override {
+    const char *text;
+};
+
+/*
+ * Reads, checks and completes the job file.  Returns false with all mistakes listed when there is any.
+ * Includes are read relative to the job file; what the job says wins.  Local: rank 0 reads and
+ * broadcasts the files' text (job_text_*), or every rank reads; see job.c.
+ */
+bool job_read(struct job *job, const char *path, int n_overrides, const struct job_override *overrides,
+              struct mistakes *mistakes);
+void job_clear(struct job *job);
+
+/* The job as used, every default written out, as YAML that job_read accepts and that gives an equal
+ * job.  The caller frees it. */
+char *job_write(const struct job *job);
+
+/*
+ * Compares two jobs' YAML as written by job_write for a resume.  What may differ (end time, output,
+ * checkpoint, decomposition, force, watch, title) is ignored; the first other difference is returned
+ * as "key: was X, now Y" (caller frees), NULL when there is none.
+ */
+char *job_difference(const char *was, const char *now);
+
+/* The reference page jobs/README.md, generated from the schema.  The caller frees it. */
+char *job_reference_page(void);
+
+#endif

@@ -1,0 +1,53 @@
+/*
+ * The surface of one body as features: faces (flat convex polygons of 3 or 4 vertices), edges and
+ * vertices.  One contact belongs to one feature; the topology says which feature's contact another
+ * one already holds.  Reference coordinates are those at time 0; `place` below are the present ones.
+ *
+ * Feature numbers of a body: faces first (0 .. n_faces-1), then edges, then vertices.  They are part
+ * of the canonical order and of checkpoints, so they depend on the job alone.
+ */
+#ifndef TREMIE_MODEL_MESH_H
+#define TREMIE_MODEL_MESH_H
+
+#include "base/vec3.h"
+
+struct mesh_face {
+    int n;           /* vertices: 3 or 4 */
+    int vertices[4]; /* counter-clockwise seen from the normal's side */
+    int edges[4];    /* edge k joins vertices k and k+1 */
+};
+
+struct mesh_edge {
+    int vertices[2];
+    int faces[2]; /* adjoining faces; -1 where there is none (a free edge).  An edge with more than two
+                     faces keeps the first two in face order; the mesh check reports it. */
+};
+
+struct mesh {
+    int n_vertices, n_edges, n_faces;
+    struct vec3 *reference; /* vertices at time 0 [m] */
+    struct vec3 *place;     /* vertices now [m] */
+    struct mesh_edge *edges;
+    struct mesh_face *faces;
+    /* Derived from `place` by mesh_update(): */
+    struct vec3 *face_normal; /* unit normals */
+    /* Edges at a vertex: edge_list[edge_begin[v] .. edge_begin[v+1]-1] */
+    int *edge_begin, *edge_list;
+};
+
+/*
+ * Builds the topology from vertices and facets (vertex indices; a triangle has -1 last).  Vertices
+ * with exactly equal coordinates are joined.  A quad that is not flat (a vertex off the plane by more
+ * than 1e-9 of its size) or not convex becomes four triangles about its mean point.
+ */
+void mesh_build(struct mesh *mesh, int n_vertices, const struct vec3 *vertices, int n_facets,
+                const int (*facets)[4]);
+void mesh_clear(struct mesh *mesh);
+/* Recomputes what is derived from `place`. */
+void mesh_update(struct mesh *mesh);
+static inline int mesh_n_features(const struct mesh *mesh)
+{
+    return mesh->n_faces + mesh->n_edges + mesh->n_vertices;
+}
+
+#endif

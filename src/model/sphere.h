@@ -1,0 +1,98 @@
+/*
+ * Rigid spheres on one rank: those it owns first, then ghosts, each part in canonical order.
+ *
+ * Hot data lie in rows of 64 bytes, one cache line, that pair kernels load whole:
+ *   motion {x y z R | vx vy vz R}    position at step n, velocity at n - 1/2
+ *   spin   {R wx R wy R wz 1/R | wx wy wz 1/m}   angular velocity at n - 1/2
+ *   force  {fx fy fz friction | tx ty tz damping}
+ * (R stands twice so that the difference of two motion rows holds R_j - R_i; the products in `spin` are
+ * derived.)  The spare force lanes gather half of the energy that each contact dissipates in this step by
+ * friction and by damping [J].  Two dummies follow the last sphere, far away, as partners of padding.
+ *
+ * Canonical order is ascending (order_cell, id): see domain/order.h.
+ */
+#ifndef TREMIE_MODEL_SPHERE_H
+#define TREMIE_MODEL_SPHERE_H
+
+#include <stdint.h>
+
+#include "base/field.h"
+#include "base/vec3.h"
+
+struct materials;
+
+struct sphere_row {
+    double lane[8];
+} __attribute__((aligned(64)));
+
+enum { SPHERE_N_FIELDS = 12, SPHERE_DUMMIES = 2 };
+
+/* State, in the order of sphere_fields[]. */
+enum sphere_field {
+    SPHERE_ID,
+    SPHERE_ORDER_CELL,
+    SPHERE_POSITION,
+    SPHERE_VELOCITY,
+    SPHERE_ANGULAR_VELOCITY,
+    SPHERE_RADIUS,
+    SPHERE_MATERIAL,
+    SPHERE_GROUP,
+    SPHERE_SIDES,
+    SPHERE_DISSIPATED_FRICTION,
+    SPHERE_DISSIPATED_DAMPING,
+    SPHERE_DISSIPATED_TANGENTIAL,
+};
+
+struct spheres {
+    int n_owned, n_all; /* owned; owned and ghosts */
+    int capacity;
+    struct sphere_row *motion, *spin, *force; /* n_all + SPHERE_DUMMIES used */
+    int64_t *id;         /* global, never reused */
+    int64_t *order_cell; /* cell of the order grid at birth or at the last renewal */
+    int32_t *material;
+    int32_t *group;
+    int64_t *sides; /* bit s: on the forward side of section s */
+    double *dissipated_friction;   /* [J] since birth */
+    double *dissipated_damping;    /* [J] */
+    double *dissipated_tangential; /* [J] lost by the tangential law on unloading */
+    /* Not state: bookkeeping of searches. */
+    double *allowance;        /* how far this sphere may go before the lists are stale [m] */
+    double *allowance_inner;  /* the same for the inner list [m] */
+    double (*searched_at)[3]; /* position at the last search [m] */
+};
+
+extern const struct field sphere_fields[SPHERE_N_FIELDS];
+
+void spheres_init(struct spheres *spheres);
+void spheres_clear(struct spheres *spheres);
+/* Room for n spheres (and the dummies); contents kept. */
+void spheres_reserve(struct spheres *spheres, int n);
+/* Where a field of the table lies. */
+struct field_view sphere_view(const struct spheres *spheres, int field);
+/* Fills what is derived from the fields of sphere i: row products, 1/m from density and radius. */
+void sphere_complete(struct spheres *spheres, int i, const struct materials *materials);
+/* Writes the dummies behind the last sphere. */
+void spheres_pad(struct spheres *spheres);
+
+static inline double *sphere_position(const struct spheres *spheres, int i)
+{
+    return spheres->motion[i].lane;
+}
+static inline double sphere_radius(const struct spheres *spheres, int i)
+{
+    return spheres->motion[i].lane[3];
+}
+static inline double *sphere_velocity(const struct spheres *spheres, int i)
+{
+    return spheres->motion[i].lane + 4;
+}
+static inline double *sphere_angular_velocity(const struct spheres *spheres, int i)
+{
+    return spheres->spin[i].lane + 4;
+}
+static inline double sphere_inverse_mass(const struct spheres *spheres, int i)
+{
+    return spheres->spin[i].lane[7];
+}
+
+#endif

@@ -1,0 +1,79 @@
+/*
+ * Checkpoints: one HDF5 file with all that the next step needs, written collectively, the same bytes
+ * whatever the number of ranks, readable on any number of ranks.
+ *
+ * Layout (all datasets sorted by id, contiguous slices of rows per rank, units and descriptions as
+ * attributes):
+ *   /run             attributes: format, format_version, tremie version, step, time [s], dt [s], next_id,
+ *                    n_spheres, n_contacts, n_facet_contacts, title; dataset job (the job text as used)
+ *   /spheres/NAME    one dataset per saved field of sphere_fields[] (n or n x width)
+ *   /contacts/       first_id, second_id, tangential_force (n x 3), contact_radius, normal_velocity;
+ *                    touching contacts, first_id < second_id, sorted by (first_id, second_id)
+ *   /facet_contacts/ id, body, feature, tangential_force, contact_radius, normal_velocity; sorted
+ *   /monitors/       names (fixed strings), sums (n x 5 int64: struct exact_sum as totals)
+ * Nothing in it depends on rank count, machine or clock (those are in the log and the series).
+ *
+ * Writing: space is reserved with posix_fallocate and agreed on, the file is written under a temporary
+ * name, fsynced, renamed, its folder fsynced.  Reading verifies the checksums of everything.
+ */
+#ifndef TREMIE_STORE_CHECKPOINT_H
+#define TREMIE_STORE_CHECKPOINT_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/exact_sum.h"
+#include "contact/contact_set.h"
+#include "contact/facet_contact.h"
+
+struct comm;
+struct spheres;
+
+enum { CHECKPOINT_FORMAT_VERSION = 1, CHECKPOINT_NAME_SIZE = 64 };
+
+struct checkpoint_monitor {
+    char name[CHECKPOINT_NAME_SIZE];
+    struct exact_sum sum;
+};
+
+struct checkpoint {
+    int64_t step;    /* steps done: positions are those at step * dt */
+    double dt;       /* [s] */
+    int64_t next_id; /* ids below were given */
+    char *title;
+    char *job_text;           /* the job as used (job_write) */
+    struct spheres *spheres;  /* owned ones are state */
+    int n_contacts;           /* records held here: see below */
+    struct contact_record *contacts;
+    int n_facet_contacts;
+    struct facet_contact_record *facet_contacts;
+    int n_monitors; /* the same names on all ranks; sums are this rank's shares */
+    struct checkpoint_monitor *monitors;
+};
+
+/*
+ * Writes the state to `path`.  Each touching contact must be held by exactly one rank (that of the
+ * owner of the lower id); facet contacts by the owner of the sphere.  Returns REPORT_FINISHED, or
+ * REPORT_STORAGE with the reason said, the same on all ranks; then no file of that name was touched.
+ * Collective.
+ */
+int checkpoint_write(const struct comm *comm, const char *path, const struct checkpoint *checkpoint);
+
+/*
+ * Reads `path` into a cleared `checkpoint`, whose `spheres` points to an initialised struct spheres;
+ * each rank gets a slice of the ids as its owned spheres (fields only: sphere_complete is the
+ * caller's), all contact records in which one of them takes part, and all facet contact records of them.
+ * Monitor totals are given to rank 0, zeros to the others.  Returns REPORT_FINISHED, or REPORT_STORAGE
+ * with the reason said (missing, truncated, checksum, newer format), the same on all ranks.
+ * Collective.
+ */
+int checkpoint_read(const struct comm *comm, const char *path, struct checkpoint *checkpoint);
+
+/* Frees what checkpoint_read allocated, except the spheres. */
+void checkpoint_clear(struct checkpoint *checkpoint);
+
+/* Only step, dt, next_id, title and job_text, on one process, without MPI (tools, resume).  Returns
+ * false with the reason in `why` (caller frees). */
+bool checkpoint_read_header(const char *path, struct checkpoint *checkpoint, char **why);
+
+#endif
