@@ -1,0 +1,143 @@
+# Builds tremie.  `make help` lists what there is.
+#
+# One makefile for the whole tree: make sees every dependency, so a change anywhere rebuilds what it
+# touches and nothing else.  Objects go to BUILD, programs to BIN; other flavours than release with
+# gcc keep their programs in their own build folder, so they never get mixed up.
+
+FLAVOUR = release
+ifeq ($(origin CC),default)
+CC = gcc
+endif
+PREFIX = /usr/local
+JOBS = $(shell nproc)
+
+compiler := $(if $(findstring clang,$(CC)),clang,gcc)
+build_name := $(FLAVOUR)$(if $(filter-out gcc,$(CC)),-$(notdir $(CC)))
+BUILD = build/$(build_name)
+BIN = $(if $(filter release,$(build_name)),bin,$(BUILD)/bin)
+
+include config/compiler/common.mk
+include config/compiler/$(compiler).mk
+include config/compiler/$(FLAVOUR).mk
+
+# Compile in parallel unless a make above this one already does.
+ifeq ($(MAKELEVEL),0)
+MAKEFLAGS += -j$(JOBS)
+endif
+MAKEFLAGS += --no-builtin-rules
+# One short line a file; V=1 shows the commands.
+say = $(if $(V),,@printf '%-8s %s\n' '$(1)' '$(2)';)
+.DELETE_ON_ERROR:
+.SUFFIXES:
+
+# ---------------------------------------------------------------------------- what there is to build
+
+main := src/run/main.c
+kernel := src/contact/pair_kernel_blocks.c
+library_sources := $(filter-out $(main) $(kernel),$(sort $(wildcard src/*/*.c)))
+library_objects := $(library_sources:%.c=$(BUILD)/%.o)
+ifneq ($(wildcard $(kernel)),)
+kernel_objects := $(kernel_isas:%=$(BUILD)/$(kernel:.c=)_%.o)
+endif
+library := $(BUILD)/libtremie.a
+
+# A tool is postproc/tremie_NAME.c with the other files of postproc/, which tools share.
+tool_sources := $(sort $(wildcard postproc/tremie_*.c))
+tool_shared := $(patsubst %.c,$(BUILD)/%.o,$(filter-out $(tool_sources),$(sort $(wildcard postproc/*.c))))
+tools := $(foreach source,$(tool_sources),$(BIN)/$(subst _,-,$(basename $(notdir $(source)))))
+programs := $(if $(wildcard $(main)),$(BIN)/tremie) $(tools)
+
+unit_sources := $(sort $(wildcard tests/unit/test_*.c))
+unit_tests := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(unit_sources))
+
+flavour_objects := $(flavour_sources:%.c=$(BUILD)/%.o)
+rules := Makefile $(wildcard config/compiler/*.mk)
+
+all_objects := $(library_objects) $(kernel_objects) $(main:%.c=$(BUILD)/%.o) $(tool_shared) \
+    $(tool_sources:%.c=$(BUILD)/%.o) $(unit_sources:%.c=$(BUILD)/%.o) $(flavour_objects)
+
+# --------------------------------------------------------------------------------------------- goals
+
+.PHONY: all hopper test lint help install clean setup unit_tests
+.DEFAULT_GOAL := all
+
+##  make              build all programs into bin/
+all: $(programs) $(library)
+
+##  make hopper       set up what is missing, build, run jobs/hopper.yaml on all cores, show results
+hopper: setup
+	@$(MAKE) --no-print-directory all
+	@config/hopper $(BIN)
+
+##  make test         set up what is missing, build, run all tests (FILTER=word: only some of them)
+test: setup
+	@$(MAKE) --no-print-directory all unit_tests
+	@BUILD=$(BUILD) BIN=$(BIN) FLAVOUR=$(FLAVOUR) CC=$(CC) tests/run $(FILTER)
+
+##  make lint         check the code's form and look for mistakes with clang-tidy and cppcheck
+lint: all
+	@CC='$(CC)' CPPFLAGS='$(CPPFLAGS)' config/lint/run $(FILES)
+
+##  make install      install programs, material library and jobs below PREFIX (PREFIX=/usr/local)
+install: all
+	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/tremie/config \
+	    $(DESTDIR)$(PREFIX)/share/tremie/jobs
+	install -m 755 $(programs) $(DESTDIR)$(PREFIX)/bin
+	install -m 644 $(wildcard config/*.yaml) $(DESTDIR)$(PREFIX)/share/tremie/config
+	install -m 644 $(wildcard jobs/*) $(DESTDIR)$(PREFIX)/share/tremie/jobs
+
+##  make clean        remove everything that was built (runs/ stays)
+clean:
+	rm -rf build bin
+
+##  make help         this list
+help:
+	@sed -n 's/^##  //p' $(firstword $(MAKEFILE_LIST))
+	@echo
+	@echo 'FLAVOUR=release|debug|sanitize chooses how to compile, CC=gcc|clang with what;'
+	@echo 'WERROR=1 makes warnings errors; BUILD= and BIN= name other folders to build into; V=1 shows the'
+	@echo 'commands.'
+
+setup:
+	@config/setup
+
+unit_tests: $(unit_tests)
+
+# --------------------------------------------------------------------------------------------- rules
+
+$(library_objects) $(tool_shared) $(main:%.c=$(BUILD)/%.o) $(tool_sources:%.c=$(BUILD)/%.o) \
+$(unit_sources:%.c=$(BUILD)/%.o): $(BUILD)/%.o: %.c $(rules)
+	@mkdir -p $(@D)
+	$(call say,compile,$<)$(CC) $(CPPFLAGS) $(CFLAGS) $(march) -MMD -MP -c -o $@ $<
+
+# The pair kernel is compiled once for each vector width; the program chooses one when it starts.
+$(kernel_objects): $(BUILD)/$(kernel:.c=)_%.o: $(kernel) $(rules)
+	@mkdir -p $(@D)
+	$(call say,compile,$< ($*))$(CC) $(CPPFLAGS) $(CFLAGS) $(kernel_flags_$*) -MMD -MP -c -o $@ $<
+
+# What a flavour links in is not ours to check.
+$(flavour_objects): $(BUILD)/%.o: %.c $(rules)
+	@mkdir -p $(@D)
+	$(call say,compile,$<)$(CC) -O1 -g -c -o $@ $<
+
+# Made anew each time, so that objects of deleted files do not linger.
+$(library): $(library_objects) $(kernel_objects)
+	@rm -f $@
+	$(call say,archive,$@)$(AR) rcs $@ $^
+
+$(BIN)/tremie: $(main:%.c=$(BUILD)/%.o) $(flavour_objects) $(library)
+	@mkdir -p $(@D)
+	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+define tool_rule
+$$(BIN)/$(subst _,-,$(1)): $$(BUILD)/postproc/$(1).o $$(tool_shared) $$(flavour_objects) $$(library)
+	@mkdir -p $$(@D)
+	$$(call say,link,$$@)$$(CC) $$(CFLAGS) $$(LDFLAGS) -o $$@ $$^ $$(LDLIBS)
+endef
+$(foreach source,$(tool_sources),$(eval $(call tool_rule,$(basename $(notdir $(source))))))
+
+$(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(flavour_objects) $(library)
+	@mkdir -p $(@D)
+	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+-include $(all_objects:.o=.d)

@@ -1,0 +1,2 @@
+# clang has no warnings of its own that we ask for.
+compiler_warnings =
