@@ -1,16 +1,18 @@
 /*
  * Several doubles side by side: what the contact law is written in.
  *
- * The includer says how many with LANES_WIDTH (1, 2, 4 or 8; 1 where it says nothing), and the same
- * text then compiles to plain scalar code or to vectors of that width.  The lanes never mix, and
+ * The includer says how many with LANES_WIDTH (1, 2, 4 or 8; 1 where it says nothing), and the
+ * same text then compiles to plain scalar code or to vectors of that width.  The lanes never
+ * mix, and
  * + - * / sqrt are exact to the last bit in each, so every width gives the same bits.
  *
- * A comparison gives a mask; where(mask, a, b) *chooses* between two values, and keep(mask, a) chooses
- * between a and +0.0.  Nothing is ever multiplied by a mask: 0 x -a is -0, and 0 x infinity is NaN.
+ * A comparison gives a mask; where(mask, a, b) *chooses* between two values, and keep(mask, a)
+ * chooses between a and +0.0.  Nothing is ever multiplied by a mask: 0 x -a is -0, and 0 x
+ * infinity is NaN.
  *
- * GCC vector extensions (gcc >= 12, clang) say nearly everything.  Written natively for x86: square
- * roots, choices, the test for any lane set, all of which gcc 12 takes apart into scalar code or
- * longer sequences.  Vector types cannot be had without a typedef.
+ * GCC vector extensions (gcc >= 12, clang) say nearly everything.  Written natively for x86:
+ * square roots, choices, the test for any lane set, all of which gcc 12 takes apart into scalar
+ * code or longer sequences.  Vector types cannot be had without a typedef.
  */
 #ifndef TREMIE_PHYSICS_LANES_H
 #define TREMIE_PHYSICS_LANES_H
@@ -57,7 +59,6 @@ LANES_INLINE bool lanes_any(lanes_mask mask)
 }
 
 #else
-
 
 typedef double lanes __attribute__((vector_size(8 * LANES_WIDTH)));
 typedef int64_t lanes_mask __attribute__((vector_size(8 * LANES_WIDTH)));
