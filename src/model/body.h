@@ -29,6 +29,7 @@ struct body {
     struct vec3 velocity_now; /* [m/s] */
     struct vec3 spin_now;     /* [rad/s] */
     struct vec3 pivot_now;    /* [m] */
+    double placed_for;        /* how long it had moved where the vertices now are [s] */
     double speed_max;         /* fastest vertex over all time, for allowances [m/s] */
 };
 
