@@ -1,0 +1,71 @@
+/*
+ * The contact law for all listed pairs of spheres: the hot loop.
+ *
+ * The kernel exists several times, compiled for vectors of 2, 4 and 8 lanes; one is chosen when the
+ * program starts.  All give the same bits: lanes never mix, each pair's arithmetic is one text
+ * (physics/contact_law.h), and contributions reach a sphere's row one by one in the order of the list.
+ */
+#ifndef TREMIE_CONTACT_PAIR_KERNEL_H
+#define TREMIE_CONTACT_PAIR_KERNEL_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "contact/contact_set.h"
+#include "model/material.h"
+#include "model/sphere.h"
+
+/* Entries of first and second that must be there and hold valid indices behind n_padded: rows are
+ * fetched that far ahead. */
+enum { PAIR_KERNEL_AHEAD = 128 };
+
+/*
+ * What a kernel works on.  Pairs k = 0 .. n_padded - 1, n_padded a multiple of CONTACT_PAD; padding
+ * pairs the two dummies, which lie apart.  Indices reach over owned spheres, ghosts and dummies,
+ * first != second, and so do all arrays that they index, dissipated_tangential included.
+ *
+ * Read: motion, spin, material, pairs.  Added to: the force rows of both spheres (force, torque, and
+ * with the ledger on half of what friction and damping dissipate in spare lanes 3 and 7); with the
+ * ledger on dissipated_tangential of the first.  Brought to the present: history.  Force rows must
+ * not hold -0: a pair that does not touch adds zeros of either sign.  A pair that touched in the last
+ * step must still be listed in this one, or the ledger misses the end of the contact.
+ */
+struct pair_kernel_work {
+    int n_padded;
+    const int *first, *second; /* in canonical order */
+    double *history[CONTACT_LANES];
+    const struct sphere_row *motion, *spin;
+    struct sphere_row *force;
+    const int32_t *material; /* of each sphere */
+    int n_materials;
+    const struct material_pair *pairs; /* n_materials x n_materials */
+    double *dissipated_tangential;     /* of each sphere [J] */
+    double dt;                         /* [s] */
+    double overlap_max;                /* out: largest overlap (1/R_i + 1/R_j) / 2 [-] */
+};
+
+/* Instruction sets, by what they ask of the processor: v2, v3 and v4 are the levels of x86-64. */
+enum pair_kernel_isa {
+    PAIR_KERNEL_AUTO, /* the widest that runs */
+    PAIR_KERNEL_GENERIC,
+    PAIR_KERNEL_V2,
+    PAIR_KERNEL_V3,
+    PAIR_KERNEL_V4,
+    PAIR_KERNEL_N_ISAS,
+};
+
+struct pair_kernel {
+    enum pair_kernel_isa isa;
+    void (*apply)(struct pair_kernel_work *work);
+};
+
+/* "auto", "generic", "v2", "v3", "v4": what --isa takes. */
+const char *pair_kernel_isa_name(enum pair_kernel_isa isa);
+/* Whether this program holds that kernel and this processor runs it. */
+bool pair_kernel_isa_runs(enum pair_kernel_isa isa);
+
+/* The kernel for spheres all of one material (uniform) or of several, with or without the energy
+ * ledger.  The instruction set must run. */
+struct pair_kernel pair_kernel_choose(enum pair_kernel_isa isa, bool uniform, bool ledger);
+
+#endif

@@ -1,0 +1,284 @@
+/*
+ * The pair kernel, in blocks of as many pairs as a vector has lanes.
+ *
+ * Compiled once for each instruction set, PAIR_KERNEL_ISA = 0 (generic), 2, 3, 4: see
+ * config/compiler.  A sphere's data are rows of one cache line, so a block loads whole rows,
+ * subtracts or adds the two of each pair, transposes them so that each component of all pairs lies in
+ * one vector, applies the law, transposes the forces back and adds whole rows.  That is twice as
+ * fast as gathering components, and leaves no scalar remainder: lists are padded with dummies.
+ *
+ * Rows of second members jump about in memory; they are fetched some blocks ahead, which more than
+ * doubles the speed once the spheres outgrow the cache.
+ *
+ * Row after row is added in the order of the list, so a sphere's sum does not depend on the number of
+ * lanes.  That serializes pairs of one sphere through memory; the law of the next block hides it.
+ */
+#include "contact/pair_kernel_blocks.h"
+
+#include "contact/pair_kernel.h"
+
+#if PAIR_KERNEL_ISA == 4
+#define LANES_WIDTH        8
+#define PAIR_KERNEL_BLOCKS pair_kernel_blocks_v4
+#elif PAIR_KERNEL_ISA == 3
+#define LANES_WIDTH        4
+#define PAIR_KERNEL_BLOCKS pair_kernel_blocks_v3
+#elif PAIR_KERNEL_ISA == 2
+#define LANES_WIDTH        2
+#define PAIR_KERNEL_BLOCKS pair_kernel_blocks_v2
+#else
+#define LANES_WIDTH        2
+#define PAIR_KERNEL_BLOCKS pair_kernel_blocks_generic
+#endif
+
+#include "physics/contact_law.h"
+
+enum {
+    WIDTH = LANES_WIDTH,
+    PARTS = 8 / WIDTH, /* vectors in a row */
+    AHEAD = 32,        /* pairs; half as many and twice as many are as good */
+};
+_Static_assert(AHEAD + WIDTH <= PAIR_KERNEL_AHEAD, "rows are fetched from within the list");
+
+#define SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
+
+/* WIDTH rows or columns of a square, in place. */
+LANES_INLINE void transpose_square(lanes *r)
+{
+#if LANES_WIDTH == 2
+    const lanes a = SHUFFLE(r[0], r[1], 0, 2), b = SHUFFLE(r[0], r[1], 1, 3);
+    r[0] = a;
+    r[1] = b;
+#elif LANES_WIDTH == 4
+    const lanes a0 = SHUFFLE(r[0], r[1], 0, 4, 2, 6), a1 = SHUFFLE(r[0], r[1], 1, 5, 3, 7);
+    const lanes a2 = SHUFFLE(r[2], r[3], 0, 4, 2, 6), a3 = SHUFFLE(r[2], r[3], 1, 5, 3, 7);
+    r[0] = SHUFFLE(a0, a2, 0, 1, 4, 5);
+    r[1] = SHUFFLE(a1, a3, 0, 1, 4, 5);
+    r[2] = SHUFFLE(a0, a2, 2, 3, 6, 7);
+    r[3] = SHUFFLE(a1, a3, 2, 3, 6, 7);
+#else
+    lanes a[8], b[8];
+#pragma GCC unroll 8
+    for (int k = 0; k < 8; k += 2) { /* squares of 1 x 1 change places */
+        a[k] = SHUFFLE(r[k], r[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+        a[k + 1] = SHUFFLE(r[k], r[k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
+#pragma GCC unroll 8
+    for (int k = 0; k < 8; k++) /* of 2 x 2 */
+        b[k] = k & 2 ? SHUFFLE(a[k - 2], a[k], 2, 3, 10, 11, 6, 7, 14, 15)
+                     : SHUFFLE(a[k], a[k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
+#pragma GCC unroll 8
+    for (int k = 0; k < 8; k++) /* of 4 x 4 */
+        r[k] = k & 4 ? SHUFFLE(b[k - 4], b[k], 4, 5, 6, 7, 12, 13, 14, 15)
+                     : SHUFFLE(b[k], b[k + 4], 0, 1, 2, 3, 8, 9, 10, 11);
+#endif
+}
+
+/* From WIDTH rows, part p of row l at r[WIDTH p + l], to 8 components, component c at r[c]; and back. */
+LANES_INLINE void transpose(lanes r[8])
+{
+#pragma GCC unroll 4
+    for (int part = 0; part < PARTS; part++)
+        transpose_square(r + WIDTH * part);
+}
+
+LANES_INLINE lanes row_part(const struct sphere_row *row, int part)
+{
+    return lanes_load(row->lane + WIDTH * part);
+}
+
+/* Both spheres' rows, combined. */
+struct block {
+    lanes motion[8]; /* {x y z of second - first, R_i + R_j | v of second - first, R_j - R_i} */
+    lanes spin[8];   /* sums {R w (3) 1/R | w (3) 1/m} */
+};
+
+LANES_INLINE void block_load(struct block *block, const struct pair_kernel_work *work, int k)
+{
+    static const double signs[8] = {1.0, 1.0, 1.0, -1.0, 1.0, 1.0, 1.0, 1.0};
+
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++) {
+        const int i = work->first[k + l], j = work->second[k + l];
+#pragma GCC unroll 4
+        for (int part = 0; part < PARTS; part++) {
+            const lanes sign = lanes_load(signs + WIDTH * part);
+            const bool has_radius = part == 3 / WIDTH;
+            const lanes of_first = row_part(&work->motion[i], part);
+            block->motion[WIDTH * part + l] =
+                row_part(&work->motion[j], part) - (has_radius ? of_first * sign : of_first);
+            block->spin[WIDTH * part + l] =
+                row_part(&work->spin[j], part) + row_part(&work->spin[i], part);
+        }
+    }
+    transpose(block->motion);
+    transpose(block->spin);
+}
+
+LANES_INLINE void fetch_ahead(const struct pair_kernel_work *work, int k)
+{
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++) {
+        const int j = work->second[k + AHEAD + l];
+        __builtin_prefetch(&work->motion[j]);
+        __builtin_prefetch(&work->spin[j]);
+        __builtin_prefetch(&work->force[j], 1);
+    }
+}
+
+/* How the spheres meet.  Lever arms reach to the middle of the overlap. */
+LANES_INLINE struct contact_law_meeting block_meeting(const struct block *block)
+{
+    const lanes *x = block->motion, *v = block->motion + 4, *s = block->spin,
+                *w = block->spin + 4;
+    const lanes distance = lanes_sqrt(contact_law_dot(x, x)),
+                inverse = 1.0 / distance;  /* [m] */
+    const lanes overlap = x[3] - distance; /* [m] */
+    struct contact_law_meeting meeting = {
+        .normal = {x[0] * inverse, x[1] * inverse, x[2] * inverse},
+        .overlap = lanes_keep(overlap > lanes_all(0.0), overlap),
+        .inverse_radius = s[3],
+        .inverse_mass = w[3],
+    };
+    const lanes *n = meeting.normal, half = 0.5 * meeting.overlap;
+    const lanes r[3] = {s[0] - half * w[0], s[1] - half * w[1], s[2] - half * w[2]}; /* [m/s] */
+
+    meeting.velocity[0] = v[0] - (r[1] * n[2] - r[2] * n[1]);
+    meeting.velocity[1] = v[1] - (r[2] * n[0] - r[0] * n[2]);
+    meeting.velocity[2] = v[2] - (r[0] * n[1] - r[1] * n[0]);
+    return meeting;
+}
+
+/* The rows to add to the force rows of the first and the second. */
+LANES_INLINE void block_rows(const struct block *block,
+                             const struct contact_law_meeting *meeting,
+                             const struct contact_law_result *result, bool ledger,
+                             lanes first[8], lanes second[8])
+{
+    const lanes *n = meeting->normal, *f = result->tangential;
+    const lanes sum = block->motion[3], difference = block->motion[7],
+                half = 0.5 * meeting->overlap;
+    const lanes arm_first = 0.5 * (sum - difference) - half;  /* [m] */
+    const lanes arm_second = 0.5 * (sum + difference) - half; /* [m] */
+    const lanes turn[3] = {n[2] * f[1] - n[1] * f[2], n[0] * f[2] - n[2] * f[0],
+                           n[1] * f[0] - n[0] * f[1]}; /* [N] */
+
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++) {
+        second[x] = f[x] + result->normal * n[x];
+        first[x] = -second[x];
+        first[4 + x] = arm_first * turn[x];
+        second[4 + x] = arm_second * turn[x];
+    }
+    first[3] = second[3] = ledger ? 0.5 * result->lost_friction : lanes_all(0.0);
+    first[7] = second[7] = ledger ? 0.5 * result->lost_damping : lanes_all(0.0);
+    transpose(first);
+    transpose(second);
+}
+
+/* Row after row in the order of the list: where pairs share a sphere, sums depend on it. */
+LANES_INLINE void block_add(struct pair_kernel_work *work, int k, const lanes first[8],
+                            const lanes second[8])
+{
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++) {
+        double *f = work->force[work->first[k + l]].lane;
+        double *g = work->force[work->second[k + l]].lane;
+#pragma GCC unroll 4
+        for (int part = 0; part < PARTS; part++) {
+            const int at = WIDTH * part;
+            lanes_store(f + at, lanes_load(f + at) + first[at + l]);
+            lanes_store(g + at, lanes_load(g + at) + second[at + l]);
+        }
+    }
+}
+
+LANES_INLINE struct contact_law_constants constants_of_one(const struct material_pair *pair)
+{
+    return (struct contact_law_constants){
+        lanes_all(pair->normal), lanes_all(pair->tangential), lanes_all(pair->damping),
+        lanes_all(pair->damping_ratio), lanes_all(pair->friction)};
+}
+
+LANES_INLINE struct contact_law_constants constants_of_each(const struct pair_kernel_work *work,
+                                                            int k)
+{
+    struct contact_law_constants constants = {{0}};
+
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++) {
+        const int a = work->material[work->first[k + l]],
+                  b = work->material[work->second[k + l]];
+        const struct material_pair *pair = &work->pairs[a * work->n_materials + b];
+        constants.normal[l] = pair->normal;
+        constants.tangential[l] = pair->tangential;
+        constants.damping[l] = pair->damping;
+        constants.damping_ratio[l] = pair->damping_ratio;
+        constants.friction[l] = pair->friction;
+    }
+    return constants;
+}
+
+/* Compiled for each choice, so that what is not asked for costs nothing. */
+LANES_INLINE void apply(struct pair_kernel_work *work, bool uniform, bool ledger)
+{
+    const lanes dt = lanes_all(work->dt);
+    struct contact_law_constants constants = {{0}};
+    lanes deepest = lanes_all(0.0);
+
+    if (uniform && work->n_padded > 0)
+        constants = constants_of_one(
+            &work->pairs[work->material[work->first[0]] * (work->n_materials + 1)]);
+    for (int k = 0; k < work->n_padded; k += WIDTH) {
+        struct block block;
+        struct contact_law_result result;
+        lanes history[CONTACT_LANES], first[8], second[8];
+
+        fetch_ahead(work, k);
+        block_load(&block, work, k);
+        if (!uniform)
+            constants = constants_of_each(work, k);
+#pragma GCC unroll 5
+        for (int h = 0; h < CONTACT_LANES; h++)
+            history[h] = lanes_load(work->history[h] + k);
+        const struct contact_law_meeting meeting = block_meeting(&block);
+        contact_law(&meeting, &constants, dt, ledger, history, &result);
+#pragma GCC unroll 5
+        for (int h = 0; h < CONTACT_LANES; h++)
+            lanes_store(work->history[h] + k, history[h]);
+        block_rows(&block, &meeting, &result, ledger, first, second);
+        block_add(work, k, first, second);
+        if (ledger)
+#pragma GCC unroll 8
+            for (int l = 0; l < WIDTH; l++)
+                work->dissipated_tangential[work->first[k + l]] += result.lost_law[l];
+        const lanes relative = meeting.overlap * meeting.inverse_radius;
+        deepest = lanes_where(relative > deepest, relative, deepest);
+    }
+    work->overlap_max = 0.0;
+    for (int l = 0; l < WIDTH; l++)
+        work->overlap_max =
+            0.5 * deepest[l] > work->overlap_max ? 0.5 * deepest[l] : work->overlap_max;
+}
+
+static void apply_mixed(struct pair_kernel_work *work)
+{
+    apply(work, false, false);
+}
+static void apply_mixed_ledger(struct pair_kernel_work *work)
+{
+    apply(work, false, true);
+}
+static void apply_uniform(struct pair_kernel_work *work)
+{
+    apply(work, true, false);
+}
+static void apply_uniform_ledger(struct pair_kernel_work *work)
+{
+    apply(work, true, true);
+}
+
+struct pair_kernel_blocks PAIR_KERNEL_BLOCKS(void) {
+    return (struct pair_kernel_blocks){
+        {{apply_mixed, apply_mixed_ledger}, {apply_uniform, apply_uniform_ledger}}};
+}

@@ -1,0 +1,16 @@
+/* What each compilation of pair_kernel_blocks.c offers to pair_kernel.c, for it alone. */
+#ifndef TREMIE_CONTACT_PAIR_KERNEL_BLOCKS_H
+#define TREMIE_CONTACT_PAIR_KERNEL_BLOCKS_H
+
+struct pair_kernel_work;
+
+struct pair_kernel_blocks {
+    void (*apply[2][2])(struct pair_kernel_work *work); /* [uniform][ledger] */
+};
+
+struct pair_kernel_blocks pair_kernel_blocks_generic(void);
+struct pair_kernel_blocks pair_kernel_blocks_v2(void);
+struct pair_kernel_blocks pair_kernel_blocks_v3(void);
+struct pair_kernel_blocks pair_kernel_blocks_v4(void);
+
+#endif
