@@ -200,16 +200,21 @@ LANES_INLINE struct contact_law_constants constants_of_one(const struct material
         lanes_all(pair->damping_ratio), lanes_all(pair->friction)};
 }
 
+LANES_INLINE const struct material_pair *pair_of(const struct pair_kernel_work *work, int k)
+{
+    const int a = work->material[work->first[k]], b = work->material[work->second[k]];
+
+    return &work->pairs[a * work->n_materials + b];
+}
+
 LANES_INLINE struct contact_law_constants constants_of_each(const struct pair_kernel_work *work,
                                                             int k)
 {
-    struct contact_law_constants constants = {{0}};
+    struct contact_law_constants constants = constants_of_one(pair_of(work, k));
 
 #pragma GCC unroll 8
-    for (int l = 0; l < WIDTH; l++) {
-        const int a = work->material[work->first[k + l]],
-                  b = work->material[work->second[k + l]];
-        const struct material_pair *pair = &work->pairs[a * work->n_materials + b];
+    for (int l = 1; l < WIDTH; l++) {
+        const struct material_pair *pair = pair_of(work, k + l);
         constants.normal[l] = pair->normal;
         constants.tangential[l] = pair->tangential;
         constants.damping[l] = pair->damping;
@@ -223,12 +228,14 @@ LANES_INLINE struct contact_law_constants constants_of_each(const struct pair_ke
 LANES_INLINE void apply(struct pair_kernel_work *work, bool uniform, bool ledger)
 {
     const lanes dt = lanes_all(work->dt);
-    struct contact_law_constants constants = {{0}};
+    struct contact_law_constants constants;
     lanes deepest = lanes_all(0.0);
 
-    if (uniform && work->n_padded > 0)
-        constants = constants_of_one(
-            &work->pairs[work->material[work->first[0]] * (work->n_materials + 1)]);
+    work->overlap_max = 0.0;
+    if (work->n_padded == 0)
+        return;
+    if (uniform)
+        constants = constants_of_one(pair_of(work, 0));
     for (int k = 0; k < work->n_padded; k += WIDTH) {
         struct block block;
         struct contact_law_result result;
@@ -255,7 +262,6 @@ LANES_INLINE void apply(struct pair_kernel_work *work, bool uniform, bool ledger
         const lanes relative = meeting.overlap * meeting.inverse_radius;
         deepest = lanes_where(relative > deepest, relative, deepest);
     }
-    work->overlap_max = 0.0;
     for (int l = 0; l < WIDTH; l++)
         work->overlap_max =
             0.5 * deepest[l] > work->overlap_max ? 0.5 * deepest[l] : work->overlap_max;
