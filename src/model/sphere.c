@@ -16,29 +16,32 @@ static const double PI = 3.14159265358979323846;
 static const double DUMMY_PLACE[SPHERE_DUMMIES] = {1e9, 2e9};
 
 const struct field sphere_fields[SPHERE_N_FIELDS] = {
-    [SPHERE_ID] = {"id", "1", "global number, never reused", FIELD_INT64, 1, FIELD_GHOST | FIELD_SAVED},
-    [SPHERE_ORDER_CELL] = {"order_cell", "1", "cell of the order grid at birth or at the last renewal",
+    [SPHERE_ID] = {"id", "1", "global number, never reused", FIELD_INT64, 1,
+                   FIELD_GHOST | FIELD_SAVED},
+    [SPHERE_ORDER_CELL] = {"order_cell", "1",
+                           "cell of the order grid at birth or at the last renewal",
                            FIELD_INT64, 1, FIELD_GHOST | FIELD_SAVED},
     [SPHERE_POSITION] = {"position", "m", "centre at this step", FIELD_DOUBLE, 3,
                          FIELD_GHOST | FIELD_MOTION | FIELD_SAVED | FIELD_PLOTTED},
     [SPHERE_VELOCITY] = {"velocity", "m/s", "velocity half a step earlier", FIELD_DOUBLE, 3,
                          FIELD_GHOST | FIELD_MOTION | FIELD_SAVED | FIELD_PLOTTED},
-    [SPHERE_ANGULAR_VELOCITY] = {"angular_velocity", "rad/s", "angular velocity half a step earlier",
-                                 FIELD_DOUBLE, 3,
+    [SPHERE_ANGULAR_VELOCITY] = {"angular_velocity", "rad/s",
+                                 "angular velocity half a step earlier", FIELD_DOUBLE, 3,
                                  FIELD_GHOST | FIELD_MOTION | FIELD_SAVED | FIELD_PLOTTED},
     [SPHERE_RADIUS] = {"radius", "m", "radius", FIELD_DOUBLE, 1,
                        FIELD_GHOST | FIELD_SAVED | FIELD_PLOTTED},
-    [SPHERE_MATERIAL] = {"material", "1", "material, counted from 0 in the order of the job", FIELD_INT32,
-                         1, FIELD_GHOST | FIELD_SAVED | FIELD_PLOTTED},
+    [SPHERE_MATERIAL] = {"material", "1", "material, counted from 0 in the order of the job",
+                         FIELD_INT32, 1, FIELD_GHOST | FIELD_SAVED | FIELD_PLOTTED},
     [SPHERE_GROUP] = {"group", "1", "group of spheres, counted from 0 in the order of the job",
                       FIELD_INT32, 1, FIELD_SAVED | FIELD_PLOTTED},
-    [SPHERE_SIDES] = {"sides", "1", "bit s is set on the forward side of section s", FIELD_INT64, 1,
-                      FIELD_SAVED},
-    [SPHERE_DISSIPATED_FRICTION] = {"dissipated_friction", "J", "turned into heat by friction since birth",
-                                    FIELD_DOUBLE, 1, FIELD_SAVED},
+    [SPHERE_SIDES] = {"sides", "1", "bit s is set on the forward side of section s",
+                      FIELD_INT64, 1, FIELD_SAVED},
+    [SPHERE_DISSIPATED_FRICTION] = {"dissipated_friction", "J",
+                                    "turned into heat by friction since birth", FIELD_DOUBLE, 1,
+                                    FIELD_SAVED},
     [SPHERE_DISSIPATED_DAMPING] = {"dissipated_damping", "J",
-                                   "turned into heat by contact damping since birth", FIELD_DOUBLE, 1,
-                                   FIELD_SAVED},
+                                   "turned into heat by contact damping since birth",
+                                   FIELD_DOUBLE, 1, FIELD_SAVED},
     [SPHERE_DISSIPATED_TANGENTIAL] = {"dissipated_tangential", "J",
                                       "lost by the tangential law on unloading since birth",
                                       FIELD_DOUBLE, 1, FIELD_SAVED},
@@ -65,7 +68,7 @@ void spheres_clear(struct spheres *spheres)
     free(spheres->dissipated_damping);
     free(spheres->dissipated_tangential);
     free(spheres->allowance);
-    free(spheres->allowance_inner);
+    free(spheres->inverse_allowance);
     free(spheres->searched_at);
     *spheres = (struct spheres){0};
 }
@@ -77,8 +80,9 @@ void spheres_reserve(struct spheres *spheres, int n)
     const size_t capacity = array_capacity((size_t)spheres->capacity, (size_t)n);
     const size_t was = spheres->motion != NULL ? (size_t)spheres->capacity + SPHERE_DUMMIES : 0;
     const size_t now = capacity + SPHERE_DUMMIES;
-#define RESIZE(member) spheres->member = array_resize(spheres->member, was, now, sizeof *spheres->member)
-#define RESIZE_ROWS(member)                                                                         \
+#define RESIZE(member)                                                                         \
+    spheres->member = array_resize(spheres->member, was, now, sizeof *spheres->member)
+#define RESIZE_ROWS(member)                                                                    \
     spheres->member = array_resize_rows(spheres->member, was, now, sizeof *spheres->member)
     RESIZE_ROWS(motion);
     RESIZE_ROWS(spin);
@@ -92,7 +96,7 @@ void spheres_reserve(struct spheres *spheres, int n)
     RESIZE(dissipated_damping);
     RESIZE(dissipated_tangential);
     RESIZE(allowance);
-    RESIZE(allowance_inner);
+    RESIZE(inverse_allowance);
     RESIZE(searched_at);
 #undef RESIZE
 #undef RESIZE_ROWS
@@ -138,7 +142,8 @@ void sphere_complete(struct spheres *spheres, int i, const struct materials *mat
 {
     double *motion = spheres->motion[i].lane, *spin = spheres->spin[i].lane;
     const double radius = motion[3];
-    const double mass = materials->density[spheres->material[i]] * (4.0 / 3.0 * PI) * (radius * radius * radius);
+    const double mass = materials->density[spheres->material[i]] * (4.0 / 3.0 * PI) *
+                        (radius * radius * radius);
     motion[7] = radius;
     for (int k = 0; k < 3; k++)
         spin[k] = radius * spin[4 + k];
@@ -151,7 +156,8 @@ void spheres_pad(struct spheres *spheres)
     for (int k = 0; k < SPHERE_DUMMIES; k++) {
         const int i = spheres->n_all + k;
         const double place = DUMMY_PLACE[k];
-        spheres->motion[i] = (struct sphere_row){{place, place, place, 1.0, 0.0, 0.0, 0.0, 1.0}};
+        spheres->motion[i] =
+            (struct sphere_row){{place, place, place, 1.0, 0.0, 0.0, 0.0, 1.0}};
         spheres->spin[i] = (struct sphere_row){{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0}};
         spheres->force[i] = (struct sphere_row){{0.0}};
         spheres->id[i] = -1;
@@ -163,6 +169,6 @@ void spheres_pad(struct spheres *spheres)
         spheres->dissipated_damping[i] = 0.0;
         spheres->dissipated_tangential[i] = 0.0;
         spheres->allowance[i] = 0.0;
-        spheres->allowance_inner[i] = 0.0;
+        spheres->inverse_allowance[i][0] = spheres->inverse_allowance[i][1] = 0.0;
     }
 }
