@@ -15,17 +15,24 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { CONTACT_LANES = 5, CONTACT_RADIUS_LANE = 3, CONTACT_PAD = 8 };
+enum { CONTACT_LANES = 5, CONTACT_RADIUS_LANE = 3, CONTACT_PAD = 8, CONTACT_AHEAD = 128 };
 
+struct candidates;
 struct spheres;
 
-struct contact_set {
+/* An inner list with history. */
+struct contact_list {
     int n;        /* entries */
     int n_padded; /* a multiple of CONTACT_PAD; the padding pairs the two dummies */
     int capacity;
-    int *first, *second;           /* storage indices */
+    int *first, *second; /* storage indices, CONTACT_AHEAD more of them than n_padded */
     double *history[CONTACT_LANES];
-    int *row_begin, *row_end;      /* entries whose first is sphere i */
+};
+
+struct contact_set {
+    struct contact_list now;
+    struct contact_list before; /* the list that `now` replaced, and room for the next one */
+    int *row_begin, *row_end;   /* entries of `now` whose first is sphere i */
     int row_capacity;
 };
 
@@ -36,9 +43,32 @@ struct contact_record {
     double history[CONTACT_LANES];
 };
 
-static inline bool contact_touches(const struct contact_set *contacts, int k)
+static inline bool contact_touches(const struct contact_list *list, int k)
 {
-    return contacts->history[CONTACT_RADIUS_LANE][k] > 0.0;
+    return list->history[CONTACT_RADIUS_LANE][k] > 0.0;
 }
+
+void contact_set_clear(struct contact_set *contacts);
+
+/*
+ * Makes the inner list anew from the candidates: those pairs that may touch within the next `horizon`
+ * seconds at 1.3 times the present speeds, or that are nearer than `base` [m] twice; sets the spheres'
+ * inner allowances accordingly.  With keep_all every candidate is kept (allowances as for the search).
+ * History of touching contacts is carried over; moved[] gives the present storage index of what was
+ * index i when the list was made (-1: no longer here), NULL when nothing moved.  Local.
+ */
+void contact_set_prune(struct contact_set *contacts, const struct candidates *candidates,
+                       struct spheres *spheres, double base, double horizon, bool keep_all, const int *moved);
+
+/* Records of touching contacts.  Those in which an owned sphere marked by chosen[] takes part, or, with
+ * chosen NULL, those whose lower id is owned (each contact on exactly one rank).  *records grows (its
+ * capacity too); returns their number.  Local. */
+int contact_set_records(const struct contact_set *contacts, const struct spheres *spheres,
+                        const unsigned char *chosen, struct contact_record **records, int *capacity);
+
+/* Puts a record's history where its pair (storage indices of first_id and second_id) is listed.  A pair
+ * that is not listed is a mistake of ours.  Local. */
+void contact_set_restore(struct contact_set *contacts, const struct candidates *candidates,
+                         const struct contact_record *record, int first, int second);
 
 #endif

@@ -9,7 +9,7 @@
  * derived.)  The spare force lanes gather half of the energy that each contact dissipates in this step by
  * friction and by damping [J].  Two dummies follow the last sphere, far away, as partners of padding.
  *
- * Canonical order is ascending (order_cell, id): see domain/order.h.
+ * Canonical order is ascending (order_cell, id): see model/order.h.
  */
 #ifndef TREMIE_MODEL_SPHERE_H
 #define TREMIE_MODEL_SPHERE_H
@@ -56,9 +56,9 @@ struct spheres {
     double *dissipated_damping;    /* [J] */
     double *dissipated_tangential; /* [J] lost by the tangential law on unloading */
     /* Not state: bookkeeping of searches. */
-    double *allowance;        /* how far this sphere may go before the lists are stale [m] */
-    double *allowance_inner;  /* the same for the inner list [m] */
-    double (*searched_at)[3]; /* position at the last search [m] */
+    double *allowance;                /* how far this sphere may go before a search is due [m] */
+    double (*inverse_allowance)[2];   /* 1/allowance of the candidates and of the inner list [1/m] */
+    double (*searched_at)[3];         /* position at the last search [m] */
 };
 
 extern const struct field sphere_fields[SPHERE_N_FIELDS];

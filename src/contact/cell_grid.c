@@ -1,0 +1,113 @@
+/* See cell_grid.h. */
+#include "contact/cell_grid.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+
+void cell_grid_clear(struct cell_grid *grid)
+{
+    free(grid->x);
+    free(grid->y);
+    free(grid->z);
+    free(grid->reach);
+    free(grid->tag);
+    free(grid->cell);
+    free(grid->begin);
+    free(grid->scratch);
+    *grid = (struct cell_grid){0};
+}
+
+static void reserve(struct cell_grid *grid, int n)
+{
+    if (n <= grid->capacity)
+        return;
+    cell_grid_clear(grid);
+    const size_t capacity = array_capacity(0, (size_t)n + (size_t)n / 4);
+    grid->capacity = (int)capacity;
+    grid->x = array_allocate_rows(capacity, sizeof(double));
+    grid->y = array_allocate_rows(capacity, sizeof(double));
+    grid->z = array_allocate_rows(capacity, sizeof(double));
+    grid->reach = array_allocate_rows(capacity, sizeof(double));
+    grid->tag = array_allocate_rows(capacity, sizeof(int));
+    grid->cell = array_allocate_rows(capacity, sizeof(int));
+    grid->scratch = array_allocate_rows(capacity, sizeof(int));
+}
+
+/* Chooses cells for the extent [low, high]: a few stray points far away must not make millions. */
+static void choose_cells(struct cell_grid *grid, const double low[3], const double high[3], double width)
+{
+    const double cells_max = 8.0 * grid->n + 64.0;
+    double count[3];
+    for (;; width *= 1.5) {
+        double product = 1.0;
+        for (int k = 0; k < 3; k++) {
+            count[k] = (high[k] - low[k]) / width;
+            product *= count[k] + 3.0;
+        }
+        if (!(product > cells_max))
+            break;
+    }
+    grid->width = width;
+    grid->n_cells = 1;
+    for (int k = 0; k < 3; k++) {
+        grid->low[k] = low[k];
+        grid->size[k] = (int)count[k] + 3;
+        grid->n_cells *= grid->size[k];
+    }
+    if (grid->n_cells + 2 > grid->cell_capacity) {
+        free(grid->begin);
+        grid->cell_capacity = (int)array_capacity(0, (size_t)grid->n_cells * 5 / 4 + 2);
+        grid->begin = array_allocate_rows((size_t)grid->cell_capacity, sizeof(int));
+    }
+}
+
+int cell_grid_along(const struct cell_grid *grid, int k, double x)
+{
+    const double cell = (x - grid->low[k]) / grid->width + 1.0;
+    if (!(cell > 0.0))
+        return 0;
+    return cell < (double)grid->size[k] - 1.0 ? (int)cell : grid->size[k] - 1;
+}
+
+void cell_grid_fill(struct cell_grid *grid, int n, const struct cell_point *points, double width)
+{
+    reserve(grid, n);
+    grid->n = n;
+    double low[3] = {0.0, 0.0, 0.0}, high[3] = {0.0, 0.0, 0.0};
+    grid->reach_max = 0.0;
+    for (int p = 0; p < n; p++) {
+        const double x[3] = {points[p].x, points[p].y, points[p].z};
+        for (int k = 0; k < 3; k++) {
+            low[k] = p > 0 && low[k] < x[k] ? low[k] : x[k];
+            high[k] = p > 0 && high[k] > x[k] ? high[k] : x[k];
+        }
+        grid->reach_max = points[p].reach > grid->reach_max ? points[p].reach : grid->reach_max;
+    }
+    choose_cells(grid, low, high, width);
+    int *begin = grid->begin;
+    memset(begin, 0, ((size_t)grid->n_cells + 1) * sizeof *begin);
+    for (int p = 0; p < n; p++) {
+        const int cx = cell_grid_along(grid, 0, points[p].x), cy = cell_grid_along(grid, 1, points[p].y);
+        const int cz = cell_grid_along(grid, 2, points[p].z);
+        grid->scratch[p] = (cz * grid->size[1] + cy) * grid->size[0] + cx;
+        begin[grid->scratch[p]]++;
+    }
+    for (int c = 0, sum = 0; c <= grid->n_cells; c++) {
+        const int count = c < grid->n_cells ? begin[c] : 0;
+        begin[c] = sum;
+        sum += count;
+    }
+    for (int p = 0; p < n; p++) {
+        const int place = begin[grid->scratch[p]]++;
+        grid->x[place] = points[p].x;
+        grid->y[place] = points[p].y;
+        grid->z[place] = points[p].z;
+        grid->reach[place] = points[p].reach;
+        grid->tag[place] = points[p].tag;
+        grid->cell[place] = grid->scratch[p];
+    }
+    memmove(begin + 1, begin, (size_t)grid->n_cells * sizeof *begin);
+    begin[0] = 0;
+}

@@ -1,0 +1,201 @@
+/*
+ * See contact_set.h.  History is carried from one list to the next by finding each touching contact's
+ * pair in the row of its first sphere: rows are short, and an ordinary search moves nothing in memory.
+ */
+#include "contact/contact_set.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "base/report.h"
+#include "contact/candidates.h"
+#include "model/sphere.h"
+
+static void list_clear(struct contact_list *list)
+{
+    free(list->first);
+    free(list->second);
+    for (int l = 0; l < CONTACT_LANES; l++)
+        free(list->history[l]);
+    *list = (struct contact_list){0};
+}
+
+void contact_set_clear(struct contact_set *contacts)
+{
+    list_clear(&contacts->now);
+    list_clear(&contacts->before);
+    free(contacts->row_begin);
+    free(contacts->row_end);
+    *contacts = (struct contact_set){0};
+}
+
+/* Room for n entries, the padding and what kernels look ahead; contents are lost. */
+static void list_reserve(struct contact_list *list, int n)
+{
+    const int needed = n + CONTACT_PAD + CONTACT_AHEAD;
+    if (needed <= list->capacity)
+        return;
+    const size_t capacity = array_capacity((size_t)list->capacity, (size_t)needed + (size_t)needed / 8);
+    list_clear(list);
+    list->capacity = (int)capacity;
+    list->first = array_allocate_rows(capacity, sizeof(int));
+    list->second = array_allocate_rows(capacity, sizeof(int));
+    for (int l = 0; l < CONTACT_LANES; l++)
+        list->history[l] = array_allocate_rows(capacity, sizeof(double));
+}
+
+static void list_pad(struct contact_list *list, int dummy)
+{
+    list->n_padded = (list->n + CONTACT_PAD - 1) / CONTACT_PAD * CONTACT_PAD;
+    for (int k = list->n; k < list->n_padded + CONTACT_AHEAD; k++) {
+        list->first[k] = dummy;
+        list->second[k] = dummy + 1;
+    }
+    for (int l = 0; l < CONTACT_LANES; l++) {
+        for (int k = list->n; k < list->n_padded; k++)
+            list->history[l][k] = 0.0;
+    }
+}
+
+/* Inner allowances: how far each sphere may go before the inner list is stale. */
+static void choose_allowances(struct spheres *spheres, double *inner, double base, double horizon, bool keep_all)
+{
+    for (int i = 0; i < spheres->n_all; i++) {
+        const double *v = sphere_velocity(spheres, i);
+        const double speed = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        const double reach = 1.3 * speed * horizon;
+        const double wanted = reach > base ? reach : base;
+        inner[i] = keep_all || wanted > spheres->allowance[i] ? spheres->allowance[i] : wanted;
+        spheres->inverse_allowance[i][1] = 1.0 / inner[i];
+    }
+}
+
+static void select_pairs(struct contact_set *contacts, const struct candidates *candidates,
+                         const struct spheres *spheres, const double *inner, bool keep_all)
+{
+    struct contact_list *list = &contacts->now;
+    int n = 0, begin = 0;
+    for (int place = 0; place < spheres->n_all; place++) {
+        const int i = candidates->at[place];
+        const double *a = spheres->motion[i].lane;
+        const double reach = a[3] + inner[i];
+        contacts->row_begin[i] = n;
+        for (int k = begin; k < candidates->row_end[place]; k++) {
+            const int j = candidates->second[k];
+            const double *b = spheres->motion[j].lane;
+            const double dx = b[0] - a[0], dy = b[1] - a[1], dz = b[2] - a[2];
+            const double sum = reach + b[3] + inner[j];
+            list->first[n] = i;
+            list->second[n] = j;
+            n += (dx * dx + dy * dy + dz * dz < sum * sum) | keep_all;
+        }
+        contacts->row_end[i] = n;
+        begin = candidates->row_end[place];
+    }
+    list->n = n;
+    for (int l = 0; l < CONTACT_LANES; l++) {
+        for (int k = 0; k < n; k++)
+            list->history[l][k] = 0.0;
+    }
+}
+
+/* Entry of the pair, -1 when it is not listed. */
+static int find_entry(const struct contact_set *contacts, int first, int second)
+{
+    for (int k = contacts->row_begin[first]; k < contacts->row_end[first]; k++) {
+        if (contacts->now.second[k] == second)
+            return k;
+    }
+    return -1;
+}
+
+/* Seen from the other side, the tangential force turns round; contact radius and normal velocity stay. */
+static void put_history(struct contact_list *list, int entry, const double history[CONTACT_LANES], bool turned)
+{
+    for (int l = 0; l < CONTACT_LANES; l++)
+        list->history[l][entry] = turned && l < CONTACT_RADIUS_LANE ? -history[l] : history[l];
+}
+
+static void place_history(struct contact_set *contacts, const struct candidates *candidates, int first,
+                          int second, const double history[CONTACT_LANES])
+{
+    const bool turned = candidates->place[first] > candidates->place[second];
+    const int entry = turned ? find_entry(contacts, second, first) : find_entry(contacts, first, second);
+    CHECK(entry >= 0, "a touching contact is not in the list");
+    put_history(&contacts->now, entry, history, turned);
+}
+
+static void carry_history(struct contact_set *contacts, const struct candidates *candidates,
+                          const struct spheres *spheres, const int *moved)
+{
+    const struct contact_list *before = &contacts->before;
+    for (int k = 0; k < before->n; k++) {
+        if (!contact_touches(before, k))
+            continue;
+        const int first = moved == NULL ? before->first[k] : moved[before->first[k]];
+        const int second = moved == NULL ? before->second[k] : moved[before->second[k]];
+        /* Contacts between what others own now are theirs to remember. */
+        if (first < 0 || second < 0 || (first >= spheres->n_owned && second >= spheres->n_owned))
+            continue;
+        double history[CONTACT_LANES];
+        for (int l = 0; l < CONTACT_LANES; l++)
+            history[l] = before->history[l][k];
+        place_history(contacts, candidates, first, second, history);
+    }
+}
+
+void contact_set_prune(struct contact_set *contacts, const struct candidates *candidates,
+                       struct spheres *spheres, double base, double horizon, bool keep_all, const int *moved)
+{
+    const struct contact_list swap = contacts->before;
+    contacts->before = contacts->now;
+    contacts->now = swap;
+    list_reserve(&contacts->now, candidates->n);
+    if (spheres->n_all > contacts->row_capacity) {
+        const size_t capacity = array_capacity((size_t)contacts->row_capacity, (size_t)spheres->n_all);
+        free(contacts->row_begin);
+        free(contacts->row_end);
+        contacts->row_begin = array_allocate_rows(capacity, sizeof(int));
+        contacts->row_end = array_allocate_rows(capacity, sizeof(int));
+        contacts->row_capacity = (int)capacity;
+    }
+    double *inner = array_allocate((size_t)spheres->n_all, sizeof *inner);
+    choose_allowances(spheres, inner, base, horizon, keep_all);
+    select_pairs(contacts, candidates, spheres, inner, keep_all);
+    list_pad(&contacts->now, spheres->n_all);
+    carry_history(contacts, candidates, spheres, moved);
+    free(inner);
+}
+
+int contact_set_records(const struct contact_set *contacts, const struct spheres *spheres,
+                        const unsigned char *chosen, struct contact_record **records, int *capacity)
+{
+    const struct contact_list *list = &contacts->now;
+    int n = 0;
+    for (int k = 0; k < list->n; k++) {
+        if (!contact_touches(list, k))
+            continue;
+        const int i = list->first[k], j = list->second[k];
+        const bool turned = spheres->id[i] > spheres->id[j];
+        const int lower = turned ? j : i, owned = spheres->n_owned;
+        const bool wanted = chosen == NULL ? lower < owned : (i < owned && chosen[i]) || (j < owned && chosen[j]);
+        if (!wanted)
+            continue;
+        ARRAY_GROW(*records, n + 1, *capacity);
+        struct contact_record *record = &(*records)[n++];
+        record->first_id = spheres->id[lower];
+        record->second_id = spheres->id[turned ? i : j];
+        for (int l = 0; l < CONTACT_LANES; l++) {
+            const double h = list->history[l][k];
+            record->history[l] = turned && l < CONTACT_RADIUS_LANE ? -h : h;
+        }
+    }
+    return n;
+}
+
+void contact_set_restore(struct contact_set *contacts, const struct candidates *candidates,
+                         const struct contact_record *record, int first, int second)
+{
+    place_history(contacts, candidates, first, second, record->history);
+}
