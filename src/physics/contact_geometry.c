@@ -1,0 +1,215 @@
+/* Closest points by feature: see contact_geometry.h.
+ *
+ * Signed offsets from the border of a region are kept as products with the length of the edge they
+ * belong to, and compared as squares: the common case needs neither root nor division. */
+#include "physics/contact_geometry.h"
+
+static const double SEAM = 1e-7; /* how far regions reach beyond their borders, in radii */
+
+/* Does an offset, given as offset times the root of length_squared, go beyond `allowed`? */
+static inline bool goes_beyond(double product, double length_squared, double allowed)
+{
+    return product > 0.0 && product * product > allowed * allowed * length_squared;
+}
+
+struct segment {
+    struct vec3 from, along; /* [m] */
+    double length_squared;   /* [m2] */
+    double foot;             /* of the centre: place along the edge times its length [m2] */
+};
+
+static inline struct segment edge_segment(const struct mesh *mesh, int edge, struct vec3 centre)
+{
+    const int *ends = mesh->edges[edge].vertices;
+    struct segment s;
+    s.from = mesh->place[ends[0]];
+    s.along = vec3_sub(mesh->place[ends[1]], s.from);
+    s.length_squared = vec3_dot(s.along, s.along);
+    s.foot = vec3_dot(vec3_sub(centre, s.from), s.along);
+    return s;
+}
+
+struct border {
+    double inside; /* how far the centre is inside side k of the face, times its length [m2] */
+    double length_squared; /* [m2] */
+};
+
+static inline struct border face_border(const struct mesh *mesh, int f, int k,
+                                        struct vec3 centre)
+{
+    const struct mesh_face *face = &mesh->faces[f];
+    const struct vec3 from = mesh->place[face->vertices[k]];
+    const struct vec3 to = mesh->place[face->vertices[k + 1 < face->n ? k + 1 : 0]];
+    const struct vec3 along = vec3_sub(to, from);
+    const struct vec3 inward = vec3_cross(mesh->face_normal[f], along);
+    return (struct border){vec3_dot(vec3_sub(centre, from), inward), vec3_dot(along, along)};
+}
+
+static inline double face_height(const struct mesh *mesh, int f, struct vec3 centre)
+{
+    const struct vec3 on = mesh->place[mesh->faces[f].vertices[0]];
+    return vec3_dot(vec3_sub(centre, on), mesh->face_normal[f]);
+}
+
+static inline struct contact_geometry on_face(const struct mesh *mesh, int f,
+                                              struct vec3 centre, double height)
+{
+    const struct vec3 normal = mesh->face_normal[f];
+    return (struct contact_geometry){
+        .point = vec3_axpy(centre, -height, normal),
+        .normal = height < 0.0 ? vec3_scale(-1.0, normal) : normal,
+        .distance = height < 0.0 ? -height : height,
+    };
+}
+
+static bool face_touches(const struct mesh *mesh, int f, struct vec3 centre, double radius,
+                         struct contact_geometry *at)
+{
+    const double height = face_height(mesh, f, centre);
+    if (!(height < radius && height > -radius))
+        return false;
+    for (int k = 0; k < mesh->faces[f].n; k++) {
+        const struct border border = face_border(mesh, f, k, centre);
+        if (goes_beyond(-border.inside, border.length_squared, SEAM * radius))
+            return false;
+    }
+    *at = on_face(mesh, f, centre, height);
+    return true;
+}
+
+/* From a point of an edge or vertex; where the centre lies on it, the surface's own normal serves. */
+static inline struct contact_geometry at_point(const struct mesh *mesh, int face,
+                                               struct vec3 point, struct vec3 centre)
+{
+    const struct vec3 arm = vec3_sub(centre, point);
+    const double distance = vec3_norm(arm);
+    return (struct contact_geometry){
+        .point = point,
+        .normal = distance > 0.0 ? vec3_scale(1.0 / distance, arm) : mesh->face_normal[face],
+        .distance = distance,
+    };
+}
+
+static inline struct contact_geometry on_edge(const struct mesh *mesh, int edge,
+                                              const struct segment *s, struct vec3 centre)
+{
+    const double part = s->foot / s->length_squared;
+    const double within = part < 0.0 ? 0.0 : part > 1.0 ? 1.0 : part;
+    const struct vec3 point = vec3_axpy(s->from, within, s->along);
+    return at_point(mesh, mesh->edges[edge].faces[0], point, centre);
+}
+
+static int side_of_edge(const struct mesh_face *face, int edge)
+{
+    int k = 0;
+    while (face->edges[k] != edge)
+        k++;
+    return k;
+}
+
+static bool edge_touches(const struct mesh *mesh, int edge, struct vec3 centre, double radius,
+                         struct contact_geometry *at)
+{
+    const struct segment s = edge_segment(mesh, edge, centre);
+    const double hair = SEAM * radius;
+    if (goes_beyond(-s.foot, s.length_squared, hair) ||
+        goes_beyond(s.foot - s.length_squared, s.length_squared, hair))
+        return false;
+    const struct contact_geometry closest = on_edge(mesh, edge, &s, centre);
+    if (!(closest.distance < radius))
+        return false;
+    for (int k = 0; k < 2; k++) {
+        const int f = mesh->edges[edge].faces[k];
+        if (f < 0)
+            continue;
+        const struct border border =
+            face_border(mesh, f, side_of_edge(&mesh->faces[f], edge), centre);
+        if (goes_beyond(border.inside, border.length_squared, hair))
+            return false;
+    }
+    *at = closest;
+    return true;
+}
+
+static inline struct contact_geometry on_vertex(const struct mesh *mesh, int vertex,
+                                                struct vec3 centre)
+{
+    const int edge = mesh->edge_list[mesh->edge_begin[vertex]];
+    return at_point(mesh, mesh->edges[edge].faces[0], mesh->place[vertex], centre);
+}
+
+static bool vertex_touches(const struct mesh *mesh, int vertex, struct vec3 centre,
+                           double radius, struct contact_geometry *at)
+{
+    const struct vec3 arm = vec3_sub(centre, mesh->place[vertex]);
+    if (!(vec3_dot(arm, arm) < radius * radius))
+        return false;
+    for (int k = mesh->edge_begin[vertex]; k < mesh->edge_begin[vertex + 1]; k++) {
+        const int edge = mesh->edge_list[k];
+        const struct segment s = edge_segment(mesh, edge, centre);
+        const double onto =
+            mesh->edges[edge].vertices[0] == vertex ? s.foot : s.length_squared - s.foot;
+        if (goes_beyond(onto, s.length_squared, SEAM * radius))
+            return false;
+    }
+    *at = on_vertex(mesh, vertex, centre);
+    return at->distance < radius;
+}
+
+bool contact_geometry_touches(const struct mesh *mesh, int feature, struct vec3 centre,
+                              double radius, struct contact_geometry *at)
+{
+    if (feature < mesh->n_faces)
+        return face_touches(mesh, feature, centre, radius, at);
+    const int edge = feature - mesh->n_faces;
+    if (edge < mesh->n_edges)
+        return edge_touches(mesh, edge, centre, radius, at);
+    return vertex_touches(mesh, edge - mesh->n_edges, centre, radius, at);
+}
+
+struct contact_geometry contact_geometry_closest(const struct mesh *mesh, int feature,
+                                                 struct vec3 centre)
+{
+    if (feature < mesh->n_faces)
+        return on_face(mesh, feature, centre, face_height(mesh, feature, centre));
+    const int edge = feature - mesh->n_faces;
+    if (edge < mesh->n_edges) {
+        const struct segment s = edge_segment(mesh, edge, centre);
+        return on_edge(mesh, edge, &s, centre);
+    }
+    return on_vertex(mesh, edge - mesh->n_edges, centre);
+}
+
+static bool face_reaches(const struct mesh *mesh, int f, struct vec3 centre, double reach)
+{
+    const double height = face_height(mesh, f, centre);
+    if (height > reach || height < -reach)
+        return false;
+    for (int k = 0; k < mesh->faces[f].n; k++) {
+        const struct border border = face_border(mesh, f, k, centre);
+        if (goes_beyond(-border.inside, border.length_squared, reach))
+            return false;
+    }
+    return true;
+}
+
+static bool edge_reaches(const struct mesh *mesh, int edge, struct vec3 centre, double reach)
+{
+    const struct segment s = edge_segment(mesh, edge, centre);
+    if (goes_beyond(-s.foot, s.length_squared, reach) ||
+        goes_beyond(s.foot - s.length_squared, s.length_squared, reach))
+        return false;
+    return !(on_edge(mesh, edge, &s, centre).distance > reach);
+}
+
+bool contact_geometry_reaches(const struct mesh *mesh, int feature, struct vec3 centre,
+                              double reach)
+{
+    if (feature < mesh->n_faces)
+        return face_reaches(mesh, feature, centre, reach);
+    const int edge = feature - mesh->n_faces;
+    if (edge < mesh->n_edges)
+        return edge_reaches(mesh, edge, centre, reach);
+    const struct vec3 arm = vec3_sub(centre, mesh->place[edge - mesh->n_edges]);
+    return !(vec3_dot(arm, arm) > reach * reach);
+}
