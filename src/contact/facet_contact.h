@@ -7,10 +7,15 @@
  * it and lies outside its adjoining faces' prisms, a vertex the rest.  So a sphere has one contact on a
  * convex edge, one a wall in a concave corner.  Contacts of one sphere with one body whose normals
  * differ by less than 15 degrees are one contact: the deeper stands, the one that holds history
- * stands until another is deeper by a tenth of a per cent of the radius.  History belongs to (sphere,
- * body, feature); a feature that becomes active takes over the history of the feature of the same sphere
- * and body that was active the step before, is not any more, and has nearly the same normal
- * (rotated with the normal), so nothing jumps when a sphere rolls over a seam.
+ * stands until another is deeper by a hundredth of the overlap.  A contact whose point lies on or
+ * behind the tangent plane of a deeper one is none: it is the edge of a neighbour in the same plane, or
+ * the far side of a thin body.  History belongs to (sphere, body, feature); a feature that becomes
+ * active takes over the history of the feature of the same sphere and body that was active the step
+ * before, is not any more, and has nearly the same normal (rotated with the normal), so nothing
+ * jumps when a sphere rolls over a seam.
+ *
+ * All of this follows from the touching contacts' history and from where things are, never from
+ * what else is listed: lists made at other moments give the same bits.
  *
  * Contributions are added to the sphere's force row in order of (sphere, body, feature), before all
  * pairs.  Force, torque and work on a body are exact sums.
@@ -55,24 +60,25 @@ struct facet_contacts {
     struct body_load *loads;    /* one a body */
     int n_bodies;
     double overlap_max;         /* largest overlap/radius of the last step */
-    /* scratch and the search grid's arrays follow, private to facet_contact.c */
-    struct facet_grid *grid;
+    struct facet_work *work;    /* search trees and scratch, private to facet_contact.c */
 };
 
 void facet_contacts_init(struct facet_contacts *facets, int n_bodies);
 void facet_contacts_clear(struct facet_contacts *facets);
 
 /* Global search: lists the features near each owned sphere (storage order is canonical order), within
- * radius + spheres->allowance + body_allowance[body]; all_pairs lists all.  History of touching
- * contacts that are in the old list for the same storage index is kept.  Local. */
+ * radius + spheres->allowance + body_allowance[body]; all_pairs lists all.  Touching contacts of the
+ * old list stay, with their history, for the same storage index.  Local. */
 void facet_contacts_search(struct facet_contacts *facets, const struct spheres *spheres,
                            const struct bodies *bodies, const double *body_allowance, bool all_pairs);
 
 /* Records of all touching contacts; *records is grown (free it); returns their number.  Local. */
 int facet_contacts_records(const struct facet_contacts *facets, const struct spheres *spheres,
                            struct facet_contact_record **records);
-/* Puts history into the list where (sphere, body, feature) is listed; index_of gives the storage index
- * of record k's sphere (or -1).  Local. */
+/* Empties the list, before spheres move in memory: what is to be kept is kept as records.  Local. */
+void facet_contacts_forget(struct facet_contacts *facets);
+/* Puts history into the list, which may be empty yet and then grows; sphere_of_record gives the storage
+ * index of record k's sphere (-1: not owned here, left out).  Local. */
 void facet_contacts_restore(struct facet_contacts *facets, int n, const struct facet_contact_record *records,
                             const int *sphere_of_record);
 
