@@ -1,0 +1,595 @@
+/*
+ * See checkpoint.h.
+ *
+ * Writing has three parts.  One rank lays the whole file out with ordinary file calls: space is reserved
+ * before and after, so that a full disk, a quota or a file-size limit shows itself where it is an error
+ * of one process, not in the midst of a collective call, where MPI's files may hang.  Then all ranks fill
+ * in their slices through parallel HDF5; nothing but row data moves in this part, each rank's as one
+ * contiguous run, so there is nothing for collective buffering to gather and a rank whose disk fails
+ * keeps nobody waiting.  Last the file is forced to the disk and renamed.  Because one rank alone decides
+ * the layout, bytes cannot depend on the number of ranks.
+ *
+ * Metadata carry HDF5's own checksums, rows those of store/table.h, the rest an attribute `checksum`.
+ * A drawback: the reserved space must be there beside the older checkpoints.
+ *
+ * Format versions count up.  A program reads its own version and all before; of a newer one it says so.
+ */
+#include "store/checkpoint.h"
+
+#include <inttypes.h>
+#include <stddef.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/array.h"
+#include "base/comm.h"
+#include "base/report.h"
+#include "model/sphere.h"
+#include "store/crc32.h"
+#include "store/file.h"
+#include "store/h5.h"
+#include "store/table.h"
+
+static const char FORMAT[] = "tremie checkpoint";
+
+enum { SPHERES, CONTACTS, FACET_CONTACTS, N_TABLES };
+
+static const struct field SUMS = {"sums",
+                                  "1",
+                                  "limbs of 2^10, 2^-30 and 2^-70, terms, overflows",
+                                  FIELD_INT64,
+                                  sizeof(struct exact_sum) / sizeof(int64_t),
+                                  0};
+
+/* ---------------------------------------------------------------------------------------- tables */
+
+static int compare_int64(int64_t a, int64_t b)
+{
+    return (a > b) - (a < b);
+}
+
+static int compare_spheres(const void *a, const void *b)
+{
+    int64_t ids[2];
+    memcpy(&ids[0], a, sizeof ids[0]);
+    memcpy(&ids[1], b, sizeof ids[1]);
+    return compare_int64(ids[0], ids[1]);
+}
+
+static int compare_contacts(const void *a, const void *b)
+{
+    const struct contact_record *p = a, *q = b;
+    const int by_first = compare_int64(p->first_id, q->first_id);
+    return by_first != 0 ? by_first : compare_int64(p->second_id, q->second_id);
+}
+
+static int compare_facet_contacts(const void *a, const void *b)
+{
+    const struct facet_contact_record *p = a, *q = b;
+    const int by_id = compare_int64(p->id, q->id);
+    const int by_body = compare_int64(p->body, q->body);
+    if (by_id != 0 || by_body != 0)
+        return by_id != 0 ? by_id : by_body;
+    return compare_int64(p->feature, q->feature);
+}
+
+/* What a contact remembers, from `offset` on. */
+static void add_history(struct table *table, size_t offset)
+{
+    static const struct field force = {
+        "tangential_force", "N", "as felt by the surface of the second partner",
+        FIELD_DOUBLE,       3,   0};
+    static const struct field radius = {"contact_radius", "m", "at the last step",
+                                        FIELD_DOUBLE,     1,   0};
+    static const struct field velocity = {
+        "normal_velocity", "m/s", "normal relative velocity of the last step",
+        FIELD_DOUBLE,      1,     0};
+    table_add_column(table, &force, offset);
+    table_add_column(table, &radius, offset + CONTACT_RADIUS_LANE * sizeof(double));
+    table_add_column(table, &velocity, offset + (CONTACT_RADIUS_LANE + 1) * sizeof(double));
+}
+
+static void describe_spheres(struct table *table)
+{
+    table_init(table, "spheres", 0, compare_spheres);
+    for (int f = 0; f < SPHERE_N_FIELDS; f++) {
+        if ((sphere_fields[f].use & FIELD_SAVED) == 0)
+            continue;
+        table_add_column(table, &sphere_fields[f], table->record_size);
+        table->record_size += field_size(&sphere_fields[f]);
+    }
+}
+
+static void describe_contacts(struct table *table)
+{
+    static const struct field first = {"first_id",  "1", "sphere of the lower id",
+                                       FIELD_INT64, 1,   0};
+    static const struct field second = {"second_id", "1", "sphere of the higher id",
+                                        FIELD_INT64, 1,   0};
+    table_init(table, "contacts", sizeof(struct contact_record), compare_contacts);
+    table_add_column(table, &first, offsetof(struct contact_record, first_id));
+    table_add_column(table, &second, offsetof(struct contact_record, second_id));
+    add_history(table, offsetof(struct contact_record, history));
+}
+
+static void describe_facet_contacts(struct table *table)
+{
+    static const struct field id = {"id", "1", "sphere", FIELD_INT64, 1, 0};
+    static const struct field body = {
+        "body", "1", "counted from 0 in the order of the job", FIELD_INT32, 1, 0};
+    static const struct field feature = {
+        "feature", "1", "faces first, then edges, then vertices", FIELD_INT32, 1, 0};
+    table_init(table, "facet_contacts", sizeof(struct facet_contact_record),
+               compare_facet_contacts);
+    table_add_column(table, &id, offsetof(struct facet_contact_record, id));
+    table_add_column(table, &body, offsetof(struct facet_contact_record, body));
+    table_add_column(table, &feature, offsetof(struct facet_contact_record, feature));
+    add_history(table, offsetof(struct facet_contact_record, history));
+}
+
+static void tables_init(struct table tables[N_TABLES])
+{
+    describe_spheres(&tables[SPHERES]);
+    describe_contacts(&tables[CONTACTS]);
+    describe_facet_contacts(&tables[FACET_CONTACTS]);
+}
+
+static void tables_clear(struct table tables[N_TABLES])
+{
+    for (int k = 0; k < N_TABLES; k++)
+        table_clear(&tables[k]);
+}
+
+/* Copies a rank's spheres into records (`pack`), or records into spheres. */
+static void move_spheres(struct table *table, const struct spheres *spheres, bool pack)
+{
+    for (int k = 0, f = 0; k < table->n_columns; k++, f++) {
+        while ((sphere_fields[f].use & FIELD_SAVED) == 0)
+            f++;
+        const struct field_view view = sphere_view(spheres, f);
+        const size_t size = field_size(&sphere_fields[f]), offset = table->columns[k].offset;
+        for (int64_t i = 0; i < table->n; i++) {
+            unsigned char *record = table->records + (size_t)i * table->record_size + offset;
+            void *place = field_at(&view, i);
+            memcpy(pack ? record : place, pack ? place : record, size);
+        }
+    }
+}
+
+static void copy_records(struct table *table, int n, const void *records)
+{
+    table->n = n;
+    table->records = array_allocate((size_t)n, table->record_size);
+    if (n > 0)
+        memcpy(table->records, records, (size_t)n * table->record_size);
+}
+
+/* The state of all ranks, sorted into slices.  Collective. */
+static void collect(struct table tables[N_TABLES], const struct comm *comm,
+                    const struct checkpoint *checkpoint)
+{
+    tables_init(tables);
+    struct table *spheres = &tables[SPHERES];
+    spheres->n = checkpoint->spheres->n_owned;
+    spheres->records = array_allocate((size_t)spheres->n, spheres->record_size);
+    move_spheres(spheres, checkpoint->spheres, true);
+    for (int i = 0; i < checkpoint->n_contacts; i++) {
+        const struct contact_record *contact = &checkpoint->contacts[i];
+        CHECK(contact->first_id < contact->second_id, "a contact of %" PRId64 " and %" PRId64,
+              contact->first_id, contact->second_id);
+    }
+    copy_records(&tables[CONTACTS], checkpoint->n_contacts, checkpoint->contacts);
+    copy_records(&tables[FACET_CONTACTS], checkpoint->n_facet_contacts,
+                 checkpoint->facet_contacts);
+    for (int k = 0; k < N_TABLES; k++)
+        table_arrange(&tables[k], comm, checkpoint->next_id);
+}
+
+/* -------------------------------------------------------------------------------------- agreement */
+
+/* Did all go well on all ranks?  If not, rank 0 gets the first rank's reason.  Collective. */
+static bool all_well(const struct comm *comm, char **why)
+{
+    enum { TEXT = 512 };
+    if (comm_agree(comm, *why != NULL) == 0)
+        return true;
+    char own[TEXT] = "";
+    if (*why != NULL)
+        snprintf(own, sizeof own, "%s", *why);
+    char(*all)[TEXT] = array_allocate((size_t)comm->n_ranks, sizeof *all);
+    comm_gather_all(comm, own, all, sizeof own);
+    int q = 0;
+    while (q < comm->n_ranks - 1 && all[q][0] == '\0')
+        q++;
+    free(*why);
+    *why = array_string(all[q]);
+    free(all);
+    return false;
+}
+
+/* ----------------------------------------------------------------------------------------- writing */
+
+static int64_t checksum(const void *bytes, size_t n)
+{
+    struct crc32 crc;
+    crc32_init(&crc);
+    return crc32_of(&crc, bytes, n);
+}
+
+static void put_run(struct h5 *h5, const struct checkpoint *checkpoint,
+                    const struct table tables[N_TABLES])
+{
+    static const char run[] = "/run";
+    h5_group(h5, run);
+    h5_put_text(h5, run, "format", FORMAT);
+    h5_put_int(h5, run, "format_version", CHECKPOINT_FORMAT_VERSION);
+    h5_put_int(h5, run, "step", checkpoint->step);
+    h5_put_double(h5, run, "time", (double)checkpoint->step * checkpoint->dt);
+    h5_put_text(h5, run, "time_unit", "s");
+    h5_put_double(h5, run, "dt", checkpoint->dt);
+    h5_put_text(h5, run, "dt_unit", "s");
+    h5_put_int(h5, run, "next_id", checkpoint->next_id);
+    h5_put_int(h5, run, "n_spheres", tables[SPHERES].n_total);
+    h5_put_int(h5, run, "n_contacts", tables[CONTACTS].n_total);
+    h5_put_int(h5, run, "n_facet_contacts", tables[FACET_CONTACTS].n_total);
+    h5_put_int(h5, run, "n_monitors", checkpoint->n_monitors);
+    h5_put_text(h5, run, "title", checkpoint->title);
+    h5_put_document(h5, "/run/job", checkpoint->job_text);
+    h5_put_int(h5, "/run/job", "checksum",
+               checksum(checkpoint->job_text, strlen(checkpoint->job_text)));
+}
+
+/* Names one a line, sums beside them. */
+static void put_monitors(struct h5 *h5, int n, const struct checkpoint_monitor *monitors)
+{
+    char *names = array_allocate((size_t)n * CHECKPOINT_NAME_SIZE + 1, 1);
+    struct exact_sum *sums = array_allocate((size_t)n, sizeof *sums);
+    size_t length = 0;
+    for (int i = 0; i < n; i++) {
+        length += (size_t)sprintf(names + length, "%.*s\n", CHECKPOINT_NAME_SIZE - 1,
+                                  monitors[i].name);
+        sums[i] = monitors[i].sum;
+    }
+    h5_group(h5, "/monitors");
+    h5_put_document(h5, "/monitors/names", names);
+    h5_put_int(h5, "/monitors/names", "checksum", checksum(names, length));
+    h5_declare_rows(h5, "/monitors/sums", &SUMS, n);
+    h5_write_rows(h5, "/monitors/sums", &SUMS, 0, n, sums);
+    h5_put_int(h5, "/monitors/sums", "checksum", checksum(sums, (size_t)n * sizeof *sums));
+    free(names);
+    free(sums);
+}
+
+/* What the file takes at most, HDF5's own needs included. */
+static int64_t file_size(const struct checkpoint *checkpoint,
+                         const struct table tables[N_TABLES])
+{
+    enum { METADATA = 1 << 17 };
+    int64_t size = METADATA + (int64_t)strlen(checkpoint->job_text) +
+                   checkpoint->n_monitors * (int64_t)sizeof *checkpoint->monitors;
+    for (int k = 0; k < N_TABLES; k++)
+        size += table_file_size(&tables[k]);
+    return size;
+}
+
+/* The whole file except rows, with space for these.  Returns NULL or the reason.  Local. */
+static char *lay_out(const char *path, const struct checkpoint *checkpoint,
+                     const struct checkpoint_monitor *totals,
+                     const struct table tables[N_TABLES])
+{
+    unlink(path);
+    /* HDF5 will give this space back when it creates the file; but it has been there. */
+    char *why = file_reserve(path, file_size(checkpoint, tables));
+    if (why != NULL)
+        return why;
+    struct h5 h5;
+    h5_create(&h5, path);
+    put_run(&h5, checkpoint, tables);
+    put_monitors(&h5, checkpoint->n_monitors, totals);
+    h5_group(&h5, "/checksums");
+    for (int k = 0; k < N_TABLES; k++)
+        table_declare(&tables[k], &h5);
+    h5_close(&h5);
+    return h5.why != NULL ? h5.why : file_reserve_all(path);
+}
+
+/* Every rank's rows, forced to the disk.  Returns NULL or this rank's reason.  Collective. */
+static char *fill_in(const struct comm *comm, const char *path,
+                     const struct table tables[N_TABLES])
+{
+    struct h5 h5;
+    h5_open_shared(&h5, path, comm);
+    for (int k = 0; k < N_TABLES; k++)
+        table_write(&tables[k], &h5);
+    h5_close(&h5);
+    return h5.why != NULL ? h5.why : file_sync(path);
+}
+
+static char *write_file(const struct comm *comm, const char *path,
+                        const struct checkpoint *checkpoint,
+                        const struct checkpoint_monitor *totals,
+                        const struct table tables[N_TABLES])
+{
+    char *temporary = file_temporary(path), *why = NULL;
+    if (comm->rank == 0)
+        why = lay_out(temporary, checkpoint, totals, tables);
+    bool well = all_well(comm, &why);
+    if (well) {
+        why = fill_in(comm, temporary, tables);
+        well = all_well(comm, &why);
+    }
+    if (well) {
+        why = comm->rank == 0 ? file_publish(temporary, path) : NULL;
+        well = all_well(comm, &why);
+    }
+    if (!well && comm->rank == 0)
+        unlink(temporary);
+    free(temporary);
+    return why;
+}
+
+int checkpoint_write(const struct comm *comm, const char *path,
+                     const struct checkpoint *checkpoint)
+{
+    file_survive_size_limit();
+    struct table tables[N_TABLES];
+    collect(tables, comm, checkpoint);
+    const int n = checkpoint->n_monitors;
+    struct checkpoint_monitor *totals = array_allocate((size_t)n, sizeof *totals);
+    for (int i = 0; i < n; i++) {
+        totals[i] = checkpoint->monitors[i];
+        exact_sum_reduce(comm, &totals[i].sum, 1);
+    }
+    char *why = write_file(comm, path, checkpoint, totals, tables);
+    if (why != NULL)
+        report_error(
+            "cannot write the checkpoint %s: %s; earlier ones are untouched: free some space "
+            "or mend the disk, then run the same command again",
+            path, why);
+    const int status = why != NULL ? REPORT_STORAGE : REPORT_FINISHED;
+    tables_clear(tables);
+    free(totals);
+    free(why);
+    return status;
+}
+
+/* ----------------------------------------------------------------------------------------- reading */
+
+/* A text with its checksum. */
+static char *get_document(struct h5 *h5, const char *path)
+{
+    char *text = h5_get_document(h5, path);
+    const int64_t stored = h5_get_int(h5, path, "checksum");
+    if (stored != checksum(text, strlen(text)))
+        h5_fail(h5, "%s: the checksum is wrong", path);
+    return text;
+}
+
+static void check_format(struct h5 *h5)
+{
+    if (h5->why == NULL && !h5_has(h5, "/run")) {
+        h5_fail(h5, "it is not a checkpoint of tremie");
+        return;
+    }
+    char *format = h5_get_text(h5, "/run", "format");
+    const int64_t version = h5_get_int(h5, "/run", "format_version");
+    if (strcmp(format, FORMAT) != 0)
+        h5_fail(h5, "it is not a checkpoint of tremie");
+    else if (version < 1 || version > CHECKPOINT_FORMAT_VERSION)
+        h5_fail(h5,
+                "its format version is %" PRId64
+                " and this program reads up to %d; use a newer tremie",
+                version, CHECKPOINT_FORMAT_VERSION);
+    free(format);
+}
+
+static void get_header(struct h5 *h5, struct checkpoint *checkpoint)
+{
+    check_format(h5);
+    checkpoint->step = h5_get_int(h5, "/run", "step");
+    checkpoint->dt = h5_get_double(h5, "/run", "dt");
+    checkpoint->next_id = h5_get_int(h5, "/run", "next_id");
+    checkpoint->title = h5_get_text(h5, "/run", "title");
+    checkpoint->job_text = get_document(h5, "/run/job");
+    if (checkpoint->step < 0 || checkpoint->next_id < 0 || !(checkpoint->dt > 0.0))
+        h5_fail(h5, "/run: step, dt or next_id make no sense");
+}
+
+bool checkpoint_read_header(const char *path, struct checkpoint *checkpoint, char **why)
+{
+    struct h5 h5;
+    *checkpoint = (struct checkpoint){0};
+    h5_open(&h5, path);
+    get_header(&h5, checkpoint);
+    h5_close(&h5);
+    *why = h5.why;
+    if (h5.why != NULL)
+        checkpoint_clear(checkpoint);
+    return h5.why == NULL;
+}
+
+static void get_monitors(struct h5 *h5, struct checkpoint *checkpoint)
+{
+    const int64_t n = h5_count_rows(h5, "/monitors/sums", &SUMS);
+    struct exact_sum *sums = array_allocate((size_t)n, sizeof *sums);
+    checkpoint->monitors = array_allocate((size_t)n, sizeof *checkpoint->monitors);
+    h5_read_rows(h5, "/monitors/sums", &SUMS, 0, n, sums);
+    if (h5_get_int(h5, "/monitors/sums", "checksum") !=
+        checksum(sums, (size_t)n * sizeof *sums))
+        h5_fail(h5, "/monitors/sums: the checksum is wrong");
+    char *names = get_document(h5, "/monitors/names"), *at = names;
+    for (int64_t i = 0; i < n; i++) {
+        struct checkpoint_monitor *monitor = &checkpoint->monitors[i];
+        const size_t length = strcspn(at, "\n");
+        if (at[length] == '\0' || length >= CHECKPOINT_NAME_SIZE) {
+            h5_fail(h5, "/monitors/names: a name is missing");
+            break;
+        }
+        memcpy(monitor->name, at, length);
+        monitor->sum = sums[i];
+        at += length + 1;
+    }
+    checkpoint->n_monitors = (int)n;
+    free(names);
+    free(sums);
+}
+
+/* A text from rank 0.  Collective. */
+static void share_text(const struct comm *comm, char **text)
+{
+    int64_t size = comm->rank == 0 ? (int64_t)strlen(*text) + 1 : 0;
+    comm_broadcast(comm, &size, sizeof size);
+    if (comm->rank != 0)
+        *text = array_allocate((size_t)size, 1);
+    comm_broadcast(comm, *text, (size_t)size);
+}
+
+/* What rank 0 read, to all; monitors' totals stay with rank 0.  Collective. */
+static void share_header(const struct comm *comm, struct checkpoint *checkpoint,
+                         struct table tables[N_TABLES])
+{
+    int64_t numbers[] = {checkpoint->step,         checkpoint->next_id,
+                         checkpoint->n_monitors,   tables[SPHERES].n_total,
+                         tables[CONTACTS].n_total, tables[FACET_CONTACTS].n_total};
+    comm_broadcast(comm, numbers, sizeof numbers);
+    comm_broadcast(comm, &checkpoint->dt, sizeof checkpoint->dt);
+    checkpoint->step = numbers[0];
+    checkpoint->next_id = numbers[1];
+    checkpoint->n_monitors = (int)numbers[2];
+    for (int k = 0; k < N_TABLES; k++)
+        tables[k].n_total = numbers[3 + k];
+    share_text(comm, &checkpoint->title);
+    share_text(comm, &checkpoint->job_text);
+    const size_t n = (size_t)checkpoint->n_monitors;
+    if (comm->rank != 0)
+        checkpoint->monitors = array_allocate(n, sizeof *checkpoint->monitors);
+    comm_broadcast(comm, checkpoint->monitors, n * sizeof *checkpoint->monitors);
+    for (size_t i = 0; comm->rank != 0 && i < n; i++)
+        checkpoint->monitors[i].sum = (struct exact_sum){0};
+}
+
+/* Everything that one process can say about the file as a whole.  Local. */
+static char *read_header(const char *path, struct checkpoint *checkpoint,
+                         struct table tables[N_TABLES])
+{
+    static const char *const counts[N_TABLES] = {"n_spheres", "n_contacts", "n_facet_contacts"};
+    struct h5 h5;
+    h5_open(&h5, path);
+    get_header(&h5, checkpoint);
+    get_monitors(&h5, checkpoint);
+    for (int k = 0; k < N_TABLES; k++) {
+        table_measure(&tables[k], &h5);
+        if (h5_get_int(&h5, "/run", counts[k]) != tables[k].n_total)
+            h5_fail(&h5, "/%s: the number of rows is not %s", tables[k].name, counts[k]);
+    }
+    h5_close(&h5);
+    return h5.why;
+}
+
+/* Values that the program would stumble over.  Bodies, features and materials are counted by the job,
+ * which the caller knows. */
+static char *check_values(const struct table tables[N_TABLES], const struct spheres *spheres)
+{
+    for (int i = 0; i < spheres->n_owned; i++)
+        if (!(sphere_radius(spheres, i) > 0.0) || spheres->material[i] < 0 ||
+            spheres->group[i] < 0)
+            return array_format("/spheres: radius, material or group of id %" PRId64
+                                " makes no sense",
+                                spheres->id[i]);
+    const struct contact_record *contacts = (const void *)tables[CONTACTS].records;
+    for (int64_t i = 0; i < tables[CONTACTS].n; i++)
+        if (contacts[i].first_id >= contacts[i].second_id ||
+            !(contacts[i].history[CONTACT_RADIUS_LANE] > 0.0))
+            return array_format("/contacts: that of %" PRId64 " and %" PRId64 " makes no sense",
+                                contacts[i].first_id, contacts[i].second_id);
+    const struct facet_contact_record *facets = (const void *)tables[FACET_CONTACTS].records;
+    for (int64_t i = 0; i < tables[FACET_CONTACTS].n; i++)
+        if (facets[i].body < 0 || facets[i].feature < 0 ||
+            !(facets[i].history[CONTACT_RADIUS_LANE] > 0.0))
+            return array_format("/facet_contacts: that of %" PRId64 " makes no sense",
+                                facets[i].id);
+    return NULL;
+}
+
+/* This rank's rows, verified.  Local. */
+static char *read_rows(const struct comm *comm, const char *path, struct checkpoint *checkpoint,
+                       struct table tables[N_TABLES])
+{
+    struct h5 h5;
+    h5_open(&h5, path);
+    for (int k = 0; k < N_TABLES; k++)
+        table_read(&tables[k], &h5, comm, checkpoint->next_id);
+    h5_close(&h5);
+    return h5.why;
+}
+
+/* Gives the records to the checkpoint. */
+static void hand_over(struct checkpoint *checkpoint, struct table tables[N_TABLES])
+{
+    checkpoint->n_contacts = (int)tables[CONTACTS].n;
+    checkpoint->contacts = (void *)tables[CONTACTS].records;
+    checkpoint->n_facet_contacts = (int)tables[FACET_CONTACTS].n;
+    checkpoint->facet_contacts = (void *)tables[FACET_CONTACTS].records;
+    tables[CONTACTS].records = NULL;
+    tables[FACET_CONTACTS].records = NULL;
+}
+
+static void place_spheres(struct spheres *spheres, struct table *table)
+{
+    spheres_reserve(spheres, (int)table->n);
+    spheres->n_owned = spheres->n_all = (int)table->n;
+    move_spheres(table, spheres, false);
+    spheres_pad(spheres);
+}
+
+static char *read_file(const struct comm *comm, const char *path, struct checkpoint *checkpoint,
+                       struct table tables[N_TABLES])
+{
+    char *why = comm->rank == 0 ? read_header(path, checkpoint, tables) : NULL;
+    if (!all_well(comm, &why))
+        return why;
+    share_header(comm, checkpoint, tables);
+    why = read_rows(comm, path, checkpoint, tables);
+    if (!all_well(comm, &why))
+        return why;
+    char *lost[2] = {table_follow(&tables[CONTACTS], comm, &tables[SPHERES], 2),
+                     table_follow(&tables[FACET_CONTACTS], comm, &tables[SPHERES], 1)};
+    place_spheres(checkpoint->spheres, &tables[SPHERES]);
+    why = lost[0] != NULL ? lost[0] : check_values(tables, checkpoint->spheres);
+    if (why == NULL)
+        why = lost[1];
+    else
+        free(lost[1]);
+    if (all_well(comm, &why))
+        hand_over(checkpoint, tables);
+    return why;
+}
+
+int checkpoint_read(const struct comm *comm, const char *path, struct checkpoint *checkpoint)
+{
+    struct table tables[N_TABLES];
+    tables_init(tables);
+    char *why = read_file(comm, path, checkpoint, tables);
+    tables_clear(tables);
+    if (why == NULL)
+        return REPORT_FINISHED;
+    report_error("cannot use the checkpoint %s: %s", path, why);
+    free(why);
+    checkpoint_clear(checkpoint);
+    checkpoint->spheres->n_owned = checkpoint->spheres->n_all = 0;
+    spheres_pad(checkpoint->spheres);
+    return REPORT_STORAGE;
+}
+
+void checkpoint_clear(struct checkpoint *checkpoint)
+{
+    struct spheres *spheres = checkpoint->spheres;
+    free(checkpoint->title);
+    free(checkpoint->job_text);
+    free(checkpoint->contacts);
+    free(checkpoint->facet_contacts);
+    free(checkpoint->monitors);
+    *checkpoint = (struct checkpoint){.spheres = spheres};
+}

@@ -1,0 +1,165 @@
+/* See file.h. */
+#include "store/file.h"
+
+#include <errno.h>
+#include <fcntl.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/array.h"
+
+static const char TEMPORARY_END[] = ".part";
+
+static char *reason(int error)
+{
+    return array_string(strerror(error));
+}
+
+void file_survive_size_limit(void)
+{
+    signal(SIGXFSZ, SIG_IGN);
+}
+
+char *file_temporary(const char *path)
+{
+    return array_format("%s%s", path, TEMPORARY_END);
+}
+
+int file_is_temporary(const char *name)
+{
+    const size_t length = strlen(name), end = sizeof TEMPORARY_END - 1;
+    return length > end && strcmp(name + length - end, TEMPORARY_END) == 0;
+}
+
+char *file_reserve(const char *path, int64_t n)
+{
+    file_survive_size_limit();
+    const int descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0)
+        return reason(errno);
+    int error = n > 0 ? posix_fallocate(descriptor, 0, n) : 0;
+    if (error == EOPNOTSUPP || error == EINVAL || error == ENOSYS)
+        error = 0; /* this file system cannot promise; writing will tell */
+    if (close(descriptor) != 0 && error == 0)
+        error = errno;
+    return error != 0 ? reason(error) : NULL;
+}
+
+char *file_reserve_all(const char *path)
+{
+    struct stat state;
+    return stat(path, &state) != 0 ? reason(errno) : file_reserve(path, state.st_size);
+}
+
+char *file_sync(const char *path)
+{
+    const int descriptor = open(path, O_RDWR | O_CLOEXEC);
+    if (descriptor < 0)
+        return reason(errno);
+    int error = fsync(descriptor) != 0 ? errno : 0;
+    if (close(descriptor) != 0 && error == 0)
+        error = errno;
+    return error != 0 ? reason(error) : NULL;
+}
+
+static char *sync_folder_of(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *folder =
+        slash == NULL ? array_string(".") : array_format("%.*s/", (int)(slash - path), path);
+    const int descriptor = open(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    free(folder);
+    if (descriptor < 0)
+        return reason(errno);
+    /* Some file systems cannot sync a folder; they say EINVAL. */
+    const int error = fsync(descriptor) != 0 && errno != EINVAL ? errno : 0;
+    close(descriptor);
+    return error != 0 ? reason(error) : NULL;
+}
+
+char *file_publish(const char *temporary, const char *path)
+{
+    if (rename(temporary, path) != 0)
+        return reason(errno);
+    return sync_folder_of(path);
+}
+
+static int write_all(int descriptor, const char *bytes, size_t n)
+{
+    while (n > 0) {
+        const ssize_t written = write(descriptor, bytes, n);
+        if (written < 0 && errno == EINTR)
+            continue;
+        if (written <= 0)
+            return written < 0 ? errno : ENOSPC;
+        bytes += written;
+        n -= (size_t)written;
+    }
+    return fsync(descriptor) != 0 ? errno : 0;
+}
+
+char *file_write(const char *path, const void *bytes, size_t n)
+{
+    file_survive_size_limit();
+    char *temporary = file_temporary(path);
+    char *why = NULL;
+    const int descriptor = open(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (descriptor < 0) {
+        why = reason(errno);
+    } else {
+        int error = write_all(descriptor, bytes, n);
+        if (close(descriptor) != 0 && error == 0)
+            error = errno;
+        why = error != 0 ? reason(error) : file_publish(temporary, path);
+        if (why != NULL)
+            unlink(temporary);
+    }
+    free(temporary);
+    return why;
+}
+
+char *file_read(const char *path, size_t limit, char **text)
+{
+    *text = NULL;
+    FILE *stream = fopen(path, "rbe");
+    if (stream == NULL)
+        return reason(errno);
+    char *bytes = NULL;
+    size_t n = 0, capacity = 0;
+    while (n <= limit && !feof(stream) && !ferror(stream)) {
+        ARRAY_GROW(bytes, n + 65536, capacity);
+        n += fread(bytes + n, 1, 65535, stream);
+    }
+    const int error = ferror(stream) ? errno : 0;
+    fclose(stream);
+    if (error != 0 || n > limit) {
+        free(bytes);
+        return error != 0 ? reason(error) : array_format("it is larger than %zu bytes", limit);
+    }
+    bytes[n] = '\0';
+    *text = bytes;
+    return NULL;
+}
+
+char *file_make_folders(const char *path)
+{
+    char *part = array_string(path);
+    int error = 0;
+    for (char *p = part + 1; error == 0; p++) {
+        const char end = *p;
+        if (end != '/' && end != '\0')
+            continue;
+        *p = '\0';
+        if (mkdir(part, 0777) != 0 && errno != EEXIST)
+            error = errno;
+        *p = end;
+        if (end == '\0')
+            break;
+    }
+    free(part);
+    return error != 0 ? reason(error) : NULL;
+}

@@ -1,0 +1,39 @@
+/*
+ * Files that are there whole or not at all: written under a temporary name, forced to the disk, renamed.
+ *
+ * Functions return NULL when all went well, else the machine's reason, which the caller frees.  All are
+ * local.
+ */
+#ifndef TREMIE_STORE_FILE_H
+#define TREMIE_STORE_FILE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+/* A file larger than the limit of the shell or queue (ulimit -f) is to be an error like a full disk, not
+ * a signal that kills. */
+void file_survive_size_limit(void);
+
+/* The name under which `path` is written before it is whole; the caller frees it. */
+char *file_temporary(const char *path);
+/* Is this the name of such a file, left by a run that was killed? */
+int file_is_temporary(const char *name);
+
+/* Creates `path`, or keeps it, with disk space for n bytes. */
+char *file_reserve(const char *path, int64_t n);
+/* The same for an existing file as long as it says it is. */
+char *file_reserve_all(const char *path);
+/* Forces a file's content to the disk. */
+char *file_sync(const char *path);
+/* Gives a file that was written and synced its final name, and forces the folder to the disk. */
+char *file_publish(const char *temporary, const char *path);
+
+/* Replaces `path` by these bytes: temporary name, sync, rename. */
+char *file_write(const char *path, const void *bytes, size_t n);
+/* All of a file of at most `limit` bytes as a string, *text; the caller frees it. */
+char *file_read(const char *path, size_t limit, char **text);
+
+/* Makes a folder and those above it, as far as they are missing. */
+char *file_make_folders(const char *path);
+
+#endif

@@ -1,0 +1,73 @@
+/*
+ * HDF5, checked.
+ *
+ * The first failure of a file is kept as `why` and everything after it does nothing, so a sequence of
+ * calls reads straight on and is tested once, at the end.  HDF5 itself prints nothing.  Objects are named
+ * by their path in the file.  Bytes depend on nothing but what is written: no times, one format version,
+ * little-endian.  Reading never trusts the file: type and shape are compared with what is expected.
+ *
+ * Row data lie contiguous and unfiltered, in space that exists once h5_declare_rows() and h5_close() have
+ * returned; writing rows changes no metadata.  So one process may lay the file out and many fill it in.
+ */
+#ifndef TREMIE_STORE_H5_H
+#define TREMIE_STORE_H5_H
+
+#include <stdbool.h>
+#include <stddef.h>
+#include <stdint.h>
+
+#include "base/field.h"
+
+struct comm;
+
+struct h5 {
+    int64_t file; /* HDF5's handle, negative when closed */
+    char *why;    /* the first failure, NULL while all is well */
+};
+
+/* A new file, written by one process.  Local. */
+void h5_create(struct h5 *h5, const char *path);
+/* A new file in memory: h5_take_image() gives its bytes.  Local. */
+void h5_create_image(struct h5 *h5);
+/* For reading, by one process.  Local. */
+void h5_open(struct h5 *h5, const char *path);
+/* For all ranks to write rows that were declared.  Collective. */
+void h5_open_shared(struct h5 *h5, const char *path, const struct comm *comm);
+/* Closes the file, if it is open.  Collective after h5_open_shared, else local. */
+void h5_close(struct h5 *h5);
+/* The whole file as bytes, which the caller frees; NULL after a failure.  Local. */
+void *h5_take_image(struct h5 *h5, size_t *n);
+/* Notes a failure found by the caller, unless there was one already.  Local. */
+void h5_fail(struct h5 *h5, const char *format, ...) __attribute__((format(printf, 2, 3)));
+
+/* All below are local. */
+void h5_group(struct h5 *h5, const char *path);
+void h5_put_text(struct h5 *h5, const char *object, const char *name, const char *text);
+void h5_put_int(struct h5 *h5, const char *object, const char *name, int64_t value);
+void h5_put_double(struct h5 *h5, const char *object, const char *name, double value);
+/* The caller frees the text; "" after a failure. */
+char *h5_get_text(struct h5 *h5, const char *object, const char *name);
+int64_t h5_get_int(struct h5 *h5, const char *object, const char *name);
+double h5_get_double(struct h5 *h5, const char *object, const char *name);
+/* Is there an object of this path? */
+bool h5_has(struct h5 *h5, const char *path);
+
+/* A long text as an object of its own. */
+void h5_put_document(struct h5 *h5, const char *path, const char *text);
+char *h5_get_document(struct h5 *h5, const char *path);
+
+/* Lays out n rows of a field, with its unit and description. */
+void h5_declare_rows(struct h5 *h5, const char *path, const struct field *field, int64_t n);
+/* Rows begin .. begin + n - 1, side by side in memory; none when n is 0. */
+void h5_write_rows(struct h5 *h5, const char *path, const struct field *field, int64_t begin,
+                   int64_t n, const void *rows);
+void h5_read_rows(struct h5 *h5, const char *path, const struct field *field, int64_t begin,
+                  int64_t n, void *rows);
+/* The number of rows there are, after comparing type and width; 0 after a failure. */
+int64_t h5_count_rows(struct h5 *h5, const char *path, const struct field *field);
+
+/* A whole column of doubles with HDF5's own Fletcher32 checksum, which any reader verifies. */
+void h5_put_column(struct h5 *h5, const char *path, const struct field *field, int64_t n,
+                   const double *values);
+
+#endif
