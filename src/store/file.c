@@ -1,6 +1,7 @@
 /* See file.h. */
 #include "store/file.h"
 
+#include <dirent.h>
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>
@@ -29,10 +30,17 @@ char *file_temporary(const char *path)
     return array_format("%s%s", path, TEMPORARY_END);
 }
 
-int file_is_temporary(const char *name)
+void file_remove_temporaries(const char *folder)
 {
-    const size_t length = strlen(name), end = sizeof TEMPORARY_END - 1;
-    return length > end && strcmp(name + length - end, TEMPORARY_END) == 0;
+    DIR *entries = opendir(folder);
+    if (entries == NULL)
+        return;
+    for (const struct dirent *entry; (entry = readdir(entries)) != NULL;) {
+        const size_t length = strlen(entry->d_name), end = sizeof TEMPORARY_END - 1;
+        if (length > end && strcmp(entry->d_name + length - end, TEMPORARY_END) == 0)
+            (void)unlinkat(dirfd(entries), entry->d_name, 0);
+    }
+    closedir(entries);
 }
 
 char *file_reserve(const char *path, int64_t n)
@@ -162,4 +170,51 @@ char *file_make_folders(const char *path)
     }
     free(part);
     return error != 0 ? reason(error) : NULL;
+}
+
+/* --------------------------------------------------------------------------------- files of a step */
+
+char *file_step_path(const char *folder, int64_t step)
+{
+    return array_format("%s/step_%012lld.h5", folder, (long long)step);
+}
+
+/* The step in a name of file_step_path(), -1 when it is another name. */
+static int64_t step_of(const char *name)
+{
+    enum { DIGITS_MIN = 12, DIGITS_MAX = 18 };
+    static const char begin[] = "step_";
+    if (strncmp(name, begin, sizeof begin - 1) != 0)
+        return -1;
+    const char *digits = name + sizeof begin - 1;
+    const size_t n_digits = strspn(digits, "0123456789");
+    if (n_digits < DIGITS_MIN || n_digits > DIGITS_MAX || strcmp(digits + n_digits, ".h5") != 0)
+        return -1;
+    return strtoll(digits, NULL, 10);
+}
+
+static int compare_steps(const void *a, const void *b)
+{
+    const int64_t *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
+int file_steps(const char *folder, int64_t **steps)
+{
+    int n = 0, capacity = 0;
+    *steps = NULL;
+    DIR *entries = opendir(folder);
+    if (entries == NULL)
+        return 0;
+    for (const struct dirent *entry; (entry = readdir(entries)) != NULL;) {
+        const int64_t step = step_of(entry->d_name);
+        if (step < 0)
+            continue;
+        ARRAY_GROW(*steps, n + 1, capacity);
+        (*steps)[n++] = step;
+    }
+    closedir(entries);
+    if (n > 0)
+        qsort(*steps, (size_t)n, sizeof **steps, compare_steps);
+    return n;
 }

@@ -16,8 +16,8 @@ void file_survive_size_limit(void);
 
 /* The name under which `path` is written before it is whole; the caller frees it. */
 char *file_temporary(const char *path);
-/* Is this the name of such a file, left by a run that was killed? */
-int file_is_temporary(const char *name);
+/* Removes such files from a folder, left by a run that was killed. */
+void file_remove_temporaries(const char *folder);
 
 /* Creates `path`, or keeps it, with disk space for n bytes. */
 char *file_reserve(const char *path, int64_t n);
@@ -35,5 +35,11 @@ char *file_read(const char *path, size_t limit, char **text);
 
 /* Makes a folder and those above it, as far as they are missing. */
 char *file_make_folders(const char *path);
+
+/* FOLDER/step_000000050000.h5; the caller frees it. */
+char *file_step_path(const char *folder, int64_t step);
+/* The steps of the files of such names in a folder, ascending; the caller frees *steps.  A folder that
+ * cannot be read has none. */
+int file_steps(const char *folder, int64_t **steps);
 
 #endif

@@ -79,30 +79,16 @@ static hid_t access_properties(void)
     return access;
 }
 
-static void create_with(struct h5 *h5, const char *path, hid_t access)
-{
-    const hid_t creation = H5Pcreate(H5P_FILE_CREATE);
-    H5Pset_obj_track_times(creation, false);
-    h5->file = H5Fcreate(path, H5F_ACC_TRUNC, creation, access);
-    if (h5->file < 0)
-        fail_at(h5, "");
-    H5Pclose(creation);
-    H5Pclose(access);
-}
-
 void h5_create(struct h5 *h5, const char *path)
 {
     prepare(h5);
-    create_with(h5, path, access_properties());
-}
-
-void h5_create_image(struct h5 *h5)
-{
-    enum { GROWTH = 1 << 18 };
-    prepare(h5);
-    const hid_t access = access_properties();
-    H5Pset_fapl_core(access, GROWTH, false);
-    create_with(h5, "image", access);
+    const hid_t access = access_properties(), creation = H5Pcreate(H5P_FILE_CREATE);
+    H5Pset_obj_track_times(creation, false);
+    h5->file = H5Fcreate(path, H5F_ACC_TRUNC, creation, access);
+    if (h5->file < 0)
+        fail_at(h5, ""); /* before another call, which would forget the reason */
+    H5Pclose(creation);
+    H5Pclose(access);
 }
 
 void h5_open(struct h5 *h5, const char *path)
@@ -111,7 +97,7 @@ void h5_open(struct h5 *h5, const char *path)
     const hid_t access = access_properties();
     h5->file = H5Fopen(path, H5F_ACC_RDONLY, access);
     if (h5->file < 0)
-        fail_at(h5, ""); /* before another call, which would forget the reason */
+        fail_at(h5, "");
     H5Pclose(access);
 }
 
@@ -122,7 +108,7 @@ void h5_open_shared(struct h5 *h5, const char *path, const struct comm *comm)
     H5Pset_fapl_mpio(access, comm->mpi, MPI_INFO_NULL);
     h5->file = H5Fopen(path, H5F_ACC_RDWR, access);
     if (h5->file < 0)
-        fail_at(h5, ""); /* before another call, which would forget the reason */
+        fail_at(h5, "");
     H5Pclose(access);
 }
 
@@ -131,24 +117,6 @@ void h5_close(struct h5 *h5)
     if (h5->file >= 0 && H5Fclose(h5->file) < 0)
         fail_at(h5, "");
     h5->file = -1;
-}
-
-void *h5_take_image(struct h5 *h5, size_t *n)
-{
-    *n = 0;
-    if (h5->why == NULL && H5Fflush(h5->file, H5F_SCOPE_GLOBAL) < 0)
-        fail_at(h5, "");
-    if (h5->why != NULL)
-        return NULL;
-    const ssize_t size = H5Fget_file_image(h5->file, NULL, 0);
-    void *bytes = array_allocate(size > 0 ? (size_t)size : 1, 1);
-    if (size <= 0 || H5Fget_file_image(h5->file, bytes, (size_t)size) != size) {
-        fail_at(h5, "");
-        free(bytes);
-        return NULL;
-    }
-    *n = (size_t)size;
-    return bytes;
 }
 
 void h5_group(struct h5 *h5, const char *path)

@@ -27,16 +27,12 @@ struct h5 {
 
 /* A new file, written by one process.  Local. */
 void h5_create(struct h5 *h5, const char *path);
-/* A new file in memory: h5_take_image() gives its bytes.  Local. */
-void h5_create_image(struct h5 *h5);
 /* For reading, by one process.  Local. */
 void h5_open(struct h5 *h5, const char *path);
 /* For all ranks to write rows that were declared.  Collective. */
 void h5_open_shared(struct h5 *h5, const char *path, const struct comm *comm);
 /* Closes the file, if it is open.  Collective after h5_open_shared, else local. */
 void h5_close(struct h5 *h5);
-/* The whole file as bytes, which the caller frees; NULL after a failure.  Local. */
-void *h5_take_image(struct h5 *h5, size_t *n);
 /* Notes a failure found by the caller, unless there was one already.  Local. */
 void h5_fail(struct h5 *h5, const char *format, ...) __attribute__((format(printf, 2, 3)));
 

@@ -27,19 +27,24 @@ struct series {
 void series_init(struct series *series, const char *name);
 void series_clear(struct series *series);
 /* Columns are added before the first row. */
-void series_add_column(struct series *series, const char *unit, const char *help, const char *name_format, ...)
-    __attribute__((format(printf, 4, 5)));
+void series_add_column(struct series *series, const char *unit, const char *help,
+                       const char *name_format, ...) __attribute__((format(printf, 4, 5)));
 /* Appends a row of n_columns values. */
 void series_add_row(struct series *series, const double *values);
+/* Forgets the rows, once they are on the disk. */
+void series_clear_rows(struct series *series);
 /* Column index by name, -1 when there is none. */
 int series_column_index(const struct series *series, const char *name);
 
 /* Writes the rows of these tables as one segment (temporary name, fsync, rename).  On one process.
- * `title` and `job_text` are kept as attributes of /run.  Returns a REPORT_ status, the reason said. */
-int series_write_segment(const char *path, const char *title, int n_tables, const struct series *const *tables);
+ * `title` is kept as an attribute of /run.  Returns a REPORT_ status, the reason said. */
+int series_write_segment(const char *path, const char *title, int n_tables,
+                         const struct series *const *tables);
 
-/* Reads one table of a run: the chain of segments of RUN/series in order.  Returns false with the
- * reason in `why` (caller frees) when nothing can be read. */
+/* Reads one table of a run: the chain of segments of RUN/series in order.  A segment that cannot be
+ * read is left out with a warning; a column that some segments lack is not-a-number there.  Returns
+ * false with the reason in `why` (caller frees) when nothing can be read; then there is nothing to
+ * clear. */
 bool series_read(struct series *series, const char *run_folder, const char *table, char **why);
 
 #endif
