@@ -49,15 +49,20 @@ struct job_spheres {
     char *file;
 };
 
-enum job_geometry { JOB_GEOMETRY_PLANE, JOB_GEOMETRY_BOX, JOB_GEOMETRY_HOPPER, JOB_GEOMETRY_MESH };
+enum job_geometry {
+    JOB_GEOMETRY_PLANE,
+    JOB_GEOMETRY_BOX,
+    JOB_GEOMETRY_HOPPER,
+    JOB_GEOMETRY_MESH
+};
 
 enum job_side { /* sides of a box that are left open */
-    JOB_SIDE_X_MIN = 1,
-    JOB_SIDE_X_MAX = 2,
-    JOB_SIDE_Y_MIN = 4,
-    JOB_SIDE_Y_MAX = 8,
-    JOB_SIDE_BOTTOM = 16,
-    JOB_SIDE_TOP = 32,
+                JOB_SIDE_X_MIN = 1,
+                JOB_SIDE_X_MAX = 2,
+                JOB_SIDE_Y_MIN = 4,
+                JOB_SIDE_Y_MAX = 8,
+                JOB_SIDE_BOTTOM = 16,
+                JOB_SIDE_TOP = 32,
 };
 
 /* A rigid body: a surface of quads and triangles that moves as prescribed. */
@@ -75,12 +80,12 @@ struct job_body {
     int n_vertices;            /* mesh */
     struct vec3 *vertices;     /* [m] */
     int n_facets;
-    int (*facets)[4];          /* vertex indices; a triangle has -1 last */
+    int (*facets)[4]; /* vertex indices; a triangle has -1 last */
     /* Motion: x(t) = pivot + R(rate t about axis) (x(0) - pivot) + velocity t, within [start, stop]. */
-    struct vec3 velocity;      /* [m/s] */
-    struct vec3 pivot, axis;   /* axis has length 1, or 0 where nothing rotates */
-    double rate;               /* angular velocity about the axis [rad/s] */
-    double start, stop;        /* [s]; stop is infinite by default */
+    struct vec3 velocity;    /* [m/s] */
+    struct vec3 pivot, axis; /* axis has length 1, or 0 where nothing rotates */
+    double rate;             /* angular velocity about the axis [rad/s] */
+    double start, stop;      /* [s]; stop is infinite by default */
 };
 
 /* A plane that counts what passes; forward is along the normal. */
@@ -94,8 +99,8 @@ enum job_weights { JOB_WEIGHTS_CONTACTS, JOB_WEIGHTS_CANDIDATES };
 enum job_search { JOB_SEARCH_AUTO, JOB_SEARCH_ALL_PAIRS };
 
 struct job {
-    char *path;  /* the job file */
-    char *name;  /* its file name without folder and ending: names the run folder */
+    char *path; /* the job file */
+    char *name; /* its file name without folder and ending: names the run folder */
     char *title;
     struct {
         double end;    /* [s]; a whole number of steps */
@@ -117,20 +122,20 @@ struct job {
         enum job_leavers leavers;
     } domain;
     struct {
-        double buffer;    /* width of the buffer zone [m]; 0 means auto (half the mean radius) */
+        double buffer; /* width of the buffer zone [m]; 0 means auto (half the mean radius) */
         double imbalance; /* largest over mean time that repartitions */
         enum job_weights weights;
-        int fixed[3];     /* a fixed grid of subdomains, {0, 0, 0} when balanced */
+        int fixed[3]; /* a fixed grid of subdomains, {0, 0, 0} when balanced */
     } decomposition;
     struct { /* for tests of the bits: none of these may change a result */
         enum job_search search;
-        int64_t search_every;        /* steps; 0: only when due */
-        int64_t redistribute_every;  /* high level forced every so many steps; 0: never */
-        int64_t repartition_every;   /* low level forced likewise */
+        int64_t search_every;       /* steps; 0: only when due */
+        int64_t redistribute_every; /* high level forced every so many steps; 0: never */
+        int64_t repartition_every;  /* low level forced likewise */
     } force;
     struct {
-        double every_wall;    /* [s]; 0: never */
-        int64_t every_steps;  /* 0: never */
+        double every_wall;   /* [s]; 0: never */
+        int64_t every_steps; /* 0: never */
         int keep;
     } checkpoint;
     struct {
@@ -151,11 +156,15 @@ struct job_override {
 
 /*
  * Reads, checks and completes the job file.  Returns false with all mistakes listed when there is any.
- * Includes are read relative to the job file; what the job says wins.  Local: rank 0 reads and
- * broadcasts the files' text (job_text_*), or every rank reads; see job.c.
+ * Includes are read relative to the job file; what the job says wins.  Local: one rank reads and
+ * broadcasts what job_write() makes of it; the others call job_read_text().
  */
-bool job_read(struct job *job, const char *path, int n_overrides, const struct job_override *overrides,
-              struct mistakes *mistakes);
+bool job_read(struct job *job, const char *path, int n_overrides,
+              const struct job_override *overrides, struct mistakes *mistakes);
+/* The same from a text that job_write() made; `path` is where the job came from.  Reads no other file.
+ * Local. */
+bool job_read_text(struct job *job, const char *path, const char *text,
+                   struct mistakes *mistakes);
 void job_clear(struct job *job);
 
 /* The job as used, every default written out, as YAML that job_read accepts and that gives an equal

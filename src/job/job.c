@@ -1,0 +1,525 @@
+/*
+ * From a file to a struct job: read the YAML, lay the overrides over it, slip the libraries under it,
+ * fill the struct by the schema, check what concerns several keys, and keep only the materials that
+ * something is made of.
+ *
+ * Materials are sorted by name and pairs by material, so the indices that states on disk hold do not
+ * depend on the order in a file or on which library gave them.
+ */
+#include "job/job.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/report.h"
+#include "job/job_check.h"
+#include "job/job_keys.h"
+#include "job/schema.h"
+#include "job/yaml_tree.h"
+
+enum { MAX_LIBRARIES = 16, KEY_LENGTH = 64, LAST_INDEX = 100000 };
+
+/* ------------------------------------------------------------------------------- overrides */
+
+/* The child that a step of a dotted path names; made where a mapping lacks it. */
+static struct yaml_tree_node *step_into(struct yaml_tree *tree, struct yaml_tree_node *node,
+                                        const char *key)
+{
+    if (node->kind == YAML_TREE_LIST) {
+        char *end;
+        const long i = strtol(key, &end, 10);
+        return *end != '\0' || end == key || i < 0 || i > LAST_INDEX
+                   ? NULL
+                   : yaml_tree_child(node, (int)i);
+    }
+    if (node->kind != YAML_TREE_MAPPING)
+        return NULL;
+    struct yaml_tree_node *child = yaml_tree_find(node, key);
+    if (child == NULL) {
+        child = yaml_tree_new(tree, YAML_TREE_MAPPING, node);
+        yaml_tree_append(node, yaml_tree_text(tree, key, strlen(key)), child);
+    }
+    return child;
+}
+
+/* Puts a value where the dotted path `keys` leads. */
+static bool value_set(struct yaml_tree *tree, struct yaml_tree_node *root, const char *keys,
+                      const struct yaml_tree_node *value)
+{
+    struct yaml_tree_node *node = root;
+    while (node != NULL && *keys != '\0') {
+        char key[KEY_LENGTH];
+        const size_t length = strcspn(keys, ".");
+        if (length == 0 || length >= KEY_LENGTH)
+            return false;
+        memcpy(key, keys, length);
+        key[length] = '\0';
+        node = step_into(tree, node, key);
+        if (node != NULL && node->key_line == 0) {
+            node->key_line = 1;
+            node->key_column = 1;
+            node->file = value->file;
+        }
+        keys += length + (keys[length] == '.');
+    }
+    if (node == NULL)
+        return false;
+    struct yaml_tree_node *next = node->next;
+    const char *key = node->key;
+    *node = *value;
+    node->key = key;
+    node->next = next;
+    node->key_line = node->key_column = 1;
+    return true;
+}
+
+/* Lays one `key=value` over the job; the value's nodes live in `tree`. */
+static void override_apply(struct yaml_tree *tree, struct yaml_tree_node *root,
+                           const char *text, struct mistakes *mistakes)
+{
+    char shown[YAML_TREE_SHOWN];
+    const char *equals = strchr(text, '=');
+    *tree = (struct yaml_tree){0};
+    if (equals == NULL || equals == text || equals[1] == '\0') {
+        mistakes_add(mistakes, "--set", 1, 1,
+                     "'%s' is not key=value; for instance time.end=0.5 is expected",
+                     yaml_tree_shown(shown, text));
+        return;
+    }
+    const int column = (int)(equals - text) + 2;
+    if (!yaml_tree_parse(tree, "--set", column, equals + 1, strlen(equals + 1), mistakes))
+        return;
+    char *keys = array_string(text);
+    keys[equals - text] = '\0';
+    if (!value_set(tree, root, keys, tree->root))
+        mistakes_add(
+            mistakes, "--set", 1, 1,
+            "'%s' leads nowhere; a path like spheres.0.radius is expected (lists count from 0)",
+            yaml_tree_shown(shown, keys));
+    free(keys);
+}
+
+/* ------------------------------------------------------------------------------- libraries */
+
+/* Appends to a mapping what a library's mapping has and it has not; mappings in both are merged. */
+static void mapping_merge(struct yaml_tree_node *own, const struct yaml_tree_node *library)
+{
+    struct yaml_tree_node *next;
+    if (own->kind != YAML_TREE_MAPPING || library->kind != YAML_TREE_MAPPING)
+        return;
+    for (struct yaml_tree_node *child = library->first; child != NULL; child = next) {
+        next = child->next;
+        struct yaml_tree_node *found = yaml_tree_find(own, child->key);
+        if (found == NULL)
+            yaml_tree_append(own, child->key, child);
+        else
+            mapping_merge(found, child);
+    }
+}
+
+/* Do two pairs name the same materials in different files? */
+static bool pair_is_replaced(const struct yaml_tree_node *own,
+                             const struct yaml_tree_node *library)
+{
+    const struct yaml_tree_node *p = yaml_tree_find(own, "between");
+    const struct yaml_tree_node *q = yaml_tree_find(library, "between");
+    if (p == NULL || q == NULL || p->n != 2 || q->n != 2 ||
+        strcmp(own->file, library->file) == 0)
+        return false;
+    const char *a = p->first->text, *b = p->last->text, *c = q->first->text, *d = q->last->text;
+    if (a == NULL || b == NULL || c == NULL || d == NULL)
+        return false;
+    return (strcmp(a, c) == 0 && strcmp(b, d) == 0) || (strcmp(a, d) == 0 && strcmp(b, c) == 0);
+}
+
+/* Appends a library's pairs that the job does not have. */
+static void pairs_merge(struct yaml_tree_node *own, const struct yaml_tree_node *library)
+{
+    struct yaml_tree_node *next;
+    if (own->kind != YAML_TREE_LIST || library->kind != YAML_TREE_LIST)
+        return;
+    for (struct yaml_tree_node *pair = library->first; pair != NULL; pair = next) {
+        bool replaced = false;
+        next = pair->next;
+        /* A list that is too long is refused later; it need not be compared. */
+        if (own->n <= JOB_KEYS_MAX_PAIRS)
+            for (const struct yaml_tree_node *other = own->first; other != NULL && !replaced;
+                 other = other->next)
+                replaced = pair_is_replaced(other, pair);
+        if (!replaced)
+            yaml_tree_append(own, NULL, pair);
+    }
+}
+
+/* The value of a key of a mapping, made empty where it is missing. */
+static struct yaml_tree_node *key_ensure(struct yaml_tree *tree, struct yaml_tree_node *mapping,
+                                         const char *key, enum yaml_tree_kind kind)
+{
+    struct yaml_tree_node *child = yaml_tree_find(mapping, key);
+    if (child == NULL && mapping->kind == YAML_TREE_MAPPING) {
+        child = yaml_tree_new(tree, kind, mapping);
+        yaml_tree_append(mapping, key, child);
+    }
+    return child;
+}
+
+/* Slips a library under the job. */
+static void library_merge(struct yaml_tree *tree, struct yaml_tree_node *root,
+                          const struct yaml_tree_node *library, struct mistakes *mistakes)
+{
+    struct yaml_tree_node *next;
+    char shown[YAML_TREE_SHOWN];
+    if (library->kind != YAML_TREE_MAPPING) {
+        mistakes_add(
+            mistakes, library->file, library->line, library->column,
+            "this is no mapping; a library with materials and contact.pairs is expected");
+        return;
+    }
+    for (struct yaml_tree_node *child = library->first; child != NULL; child = next) {
+        next = child->next;
+        struct yaml_tree_node *pairs = yaml_tree_find(child, "pairs");
+        if (strcmp(child->key, "materials") == 0) {
+            mapping_merge(key_ensure(tree, root, "materials", YAML_TREE_MAPPING), child);
+        } else if (strcmp(child->key, "contact") == 0 && pairs != NULL && child->n == 1) {
+            struct yaml_tree_node *contact =
+                key_ensure(tree, root, "contact", YAML_TREE_MAPPING);
+            if (contact->kind == YAML_TREE_MAPPING)
+                pairs_merge(key_ensure(tree, contact, "pairs", YAML_TREE_LIST), pairs);
+        } else {
+            mistakes_add(
+                mistakes, child->file, child->key_line, child->key_column,
+                "'%s' does not belong in a library; materials and contact: {pairs: ...} are "
+                "expected",
+                yaml_tree_shown(shown, child->key));
+        }
+    }
+}
+
+/* Reads one library; the mistake of a path that cannot be opened stands where the job names it. */
+static void library_read(struct yaml_tree *tree, struct yaml_tree_node *root,
+                         const struct yaml_tree_node *include, struct mistakes *mistakes)
+{
+    *tree = (struct yaml_tree){0};
+    if (include->kind != YAML_TREE_SCALAR || include->text[0] == '\0') {
+        mistakes_add(
+            mistakes, include->file, include->line, include->column,
+            "include holds something else; the path of a file, or a list of them, is expected");
+        return;
+    }
+    char *path = schema_path(include->text, include->file);
+    FILE *file = fopen(path, "r");
+    if (file == NULL)
+        mistakes_add(
+            mistakes, include->file, include->line, include->column,
+            "include: '%.200s' cannot be read; a file relative to this one is expected", path);
+    else if (fclose(file) == 0 && (yaml_tree_read(tree, path, mistakes) || tree->root != NULL))
+        library_merge(tree, root, tree->root, mistakes);
+    free(path);
+}
+
+/* Slips all libraries under the job, the last one first: a later one wins. */
+static void libraries_read(struct yaml_tree *trees, struct yaml_tree_node *root,
+                           struct mistakes *mistakes)
+{
+    const struct yaml_tree_node *include = yaml_tree_find(root, "include");
+    if (include == NULL)
+        return;
+    if (include->kind != YAML_TREE_LIST) {
+        library_read(&trees[0], root, include, mistakes);
+        return;
+    }
+    if (include->n > MAX_LIBRARIES)
+        mistakes_add(mistakes, include->file, include->line, include->column,
+                     "include lists %d files; at most %d are expected", include->n,
+                     MAX_LIBRARIES);
+    for (int i = include->n - 1; i >= 0 && include->n <= MAX_LIBRARIES; i--)
+        library_read(&trees[i], root, yaml_tree_child(include, i), mistakes);
+}
+
+/* ------------------------------------------------------------------------------- filling */
+
+/* "runs/../hopper.yaml" -> "hopper" */
+static char *job_name(const char *path)
+{
+    const char *slash = strrchr(path, '/');
+    char *name = array_string(slash != NULL ? slash + 1 : path);
+    char *point = strrchr(name, '.');
+    if (point != NULL && point != name)
+        *point = '\0';
+    return name;
+}
+
+static int compare_texts(const void *a, const void *b)
+{
+    return strcmp(*(const char *const *)a, *(const char *const *)b);
+}
+
+/* The names of all materials in the order that the schema gives them. */
+static const char **material_names(const struct yaml_tree_node *root, int *n)
+{
+    const struct yaml_tree_node *materials = yaml_tree_find(root, "materials");
+    const bool usable = materials != NULL && materials->kind == YAML_TREE_MAPPING;
+    const char **names = array_allocate(usable ? (size_t)materials->n : 0, sizeof *names);
+    *n = 0;
+    for (const struct yaml_tree_node *m = usable ? materials->first : NULL; m != NULL;
+         m = m->next)
+        names[(*n)++] = m->key;
+    qsort(names, (size_t)*n, sizeof *names, compare_texts);
+    return names;
+}
+
+static int compare_pairs(const void *a, const void *b)
+{
+    const struct job_pair *p = a, *q = b;
+    return p->a != q->a ? p->a - q->a : p->b - q->b;
+}
+
+/* Puts pairs into the order of their materials. */
+static void pairs_sort(struct job *job)
+{
+    for (int k = 0; k < job->n_pairs; k++) {
+        struct job_pair *pair = &job->pairs[k];
+        const int a = pair->a, b = pair->b;
+        pair->a = a < b ? a : b;
+        pair->b = a < b ? b : a;
+    }
+    qsort(job->pairs, (size_t)job->n_pairs, sizeof *job->pairs, compare_pairs);
+}
+
+/* Forgets the materials that nothing is made of, and their pairs. */
+static void materials_prune(struct job *job, const bool *used)
+{
+    int *index = array_allocate((size_t)job->n_materials, sizeof *index);
+    int n_materials = 0, n_pairs = 0;
+    for (int m = 0; m < job->n_materials; m++) {
+        index[m] = used[m] ? n_materials : -1;
+        if (used[m])
+            job->materials[n_materials++] = job->materials[m];
+        else
+            free(job->materials[m].name);
+    }
+    for (int k = 0; k < job->n_pairs; k++) {
+        struct job_pair pair = job->pairs[k];
+        pair.a = index[pair.a];
+        pair.b = index[pair.b];
+        if (pair.a >= 0 && pair.b >= 0)
+            job->pairs[n_pairs++] = pair;
+    }
+    job->n_materials = n_materials;
+    job->n_pairs = n_pairs;
+    for (int i = 0; i < job->n_spheres; i++)
+        job->spheres[i].material = index[job->spheres[i].material];
+    for (int i = 0; i < job->n_bodies; i++)
+        job->bodies[i].material = index[job->bodies[i].material];
+    free(index);
+}
+
+/* Fills the job from a complete tree and frees it again when there are mistakes. */
+static bool job_fill(struct job *job, const char *path, const struct yaml_tree_node *root,
+                     bool read_files, struct mistakes *mistakes)
+{
+    struct schema_reader reader = {.mistakes = mistakes};
+    const char **names = material_names(root, &reader.n_names);
+    reader.names = names;
+    schema_read(&reader, job_keys, root, "", job);
+    job->path = array_string(path);
+    job->name = job_name(path);
+    bool *used = array_allocate((size_t)job->n_materials, sizeof *used);
+    job_check(job, root, read_files, used, mistakes);
+    const bool fine = mistakes->n == 0;
+    if (fine && read_files)
+        materials_prune(job, used);
+    if (fine)
+        pairs_sort(job);
+    else
+        job_clear(job);
+    free(used);
+    free(names);
+    return fine;
+}
+
+bool job_read(struct job *job, const char *path, int n_overrides,
+              const struct job_override *overrides, struct mistakes *mistakes)
+{
+    struct yaml_tree tree, libraries[MAX_LIBRARIES] = {{0}};
+    struct yaml_tree *values = array_allocate((size_t)n_overrides, sizeof *values);
+    *job = (struct job){0};
+    bool fine = yaml_tree_read(&tree, path, mistakes) || tree.root != NULL;
+    if (fine) {
+        for (int i = 0; i < n_overrides; i++)
+            override_apply(&values[i], tree.root, overrides[i].text, mistakes);
+        libraries_read(libraries, tree.root, mistakes);
+        fine = job_fill(job, path, tree.root, true, mistakes);
+    }
+    for (int i = 0; i < MAX_LIBRARIES; i++)
+        yaml_tree_clear(&libraries[i]);
+    for (int i = 0; i < n_overrides; i++)
+        yaml_tree_clear(&values[i]);
+    free(values);
+    yaml_tree_clear(&tree);
+    return fine;
+}
+
+bool job_read_text(struct job *job, const char *path, const char *text,
+                   struct mistakes *mistakes)
+{
+    struct yaml_tree tree;
+    *job = (struct job){0};
+    const bool fine = yaml_tree_parse(&tree, path, 1, text, strlen(text), mistakes) &&
+                      job_fill(job, path, tree.root, false, mistakes);
+    yaml_tree_clear(&tree);
+    return fine;
+}
+
+void job_clear(struct job *job)
+{
+    schema_clear(job_keys, job);
+    free(job->path);
+    free(job->name);
+    *job = (struct job){0};
+}
+
+char *job_write(const struct job *job)
+{
+    const char **names = array_allocate((size_t)job->n_materials, sizeof *names);
+    for (int m = 0; m < job->n_materials; m++)
+        names[m] = job->materials[m].name;
+    char *text = NULL;
+    size_t n = 0;
+    FILE *out = open_memstream(&text, &n);
+    CHECK(out != NULL, "out of memory for the text of the job");
+    schema_write(out, job_keys, job, names);
+    CHECK(fclose(out) == 0, "out of memory for the text of the job");
+    free(names);
+    return text;
+}
+
+static const char reference_head[] =
+    "# The job file\n"
+    "\n"
+    "This page is written by `bin/tremie reference` from the table that also checks job files\n"
+    "(`src/job/job_keys.c`); a test compares the two. `bin/tremie check JOB` lists every mistake of a\n"
+    "file at once, as `file:line:column: what is wrong; what is expected`.\n"
+    "\n"
+    "A job is one YAML file in UTF-8 of at most 4 MiB, without anchors, aliases and tags. Keys are those\n"
+    "below and no others. A number may carry a unit, like `2.5 mm`, `10 us`, `70 GPa`, `9.81 m/s2`,\n"
+    "`30 deg` or `100 rpm`; without one it is in the SI unit given here. `2.5 mm` and `0.0025` are\n"
+    "exactly the same number. `.` stands for a key inside a mapping, `[]` for the elements of a list,\n"
+    "NAME for any name. What has no default and is not required is absent when left out.\n"
+    "\n"
+    "`include` names libraries, like `../config/materials.yaml`: files with `materials` and\n"
+    "`contact: {pairs: ...}` alone. What the job itself says wins, key by key for a material, pair by\n"
+    "pair for pairs. `--set KEY=VALUE` on the command line wins over both; it takes the same keys with\n"
+    "numbers from 0 for the elements of lists, as in `--set spheres.0.radius=0.12`.\n"
+    "\n"
+    "The folder of a run holds `job.yaml`: the job as used, libraries and defaults written out. On a\n"
+    "resume `title`, `time.end`, `decomposition`, `checkpoint`, `output`, `watch` and `testing` may\n"
+    "differ; everything else must be as it was.\n";
+
+char *job_reference_page(void)
+{
+    char *text = NULL;
+    size_t n = 0;
+    FILE *out = open_memstream(&text, &n);
+    CHECK(out != NULL, "out of memory for the reference page");
+    fputs(reference_head, out);
+    schema_reference(out, job_keys);
+    CHECK(fclose(out) == 0, "out of memory for the reference page");
+    return text;
+}
+
+/* ------------------------------------------------------------------------------- comparing */
+
+/* What may change between a run and its resume. */
+static const char *const may_differ[] = {"title",         "time.end", "output", "checkpoint",
+                                         "decomposition", "testing",  "watch"};
+
+/* How a value is shown in a message. */
+static char *value_shown(const struct yaml_tree_node *node)
+{
+    char shown[YAML_TREE_SHOWN];
+    if (node == NULL)
+        return array_string("not given");
+    if (node->kind == YAML_TREE_SCALAR)
+        return array_string(yaml_tree_shown(shown, node->text));
+    return array_format("%s of %d", node->kind == YAML_TREE_LIST ? "a list" : "a mapping",
+                        node->n);
+}
+
+static char *difference_report(const char *path, const struct yaml_tree_node *was,
+                               const struct yaml_tree_node *now)
+{
+    char *before = value_shown(was), *after = value_shown(now);
+    char *text = array_format("%s: was %s, now %s", path, before, after);
+    free(before);
+    free(after);
+    return text;
+}
+
+/* Files are the same when their names are: a folder may have been moved. */
+static bool scalars_equal(const char *key, const char *was, const char *now)
+{
+    if (key != NULL && strcmp(key, "file") == 0) {
+        const char *p = strrchr(was, '/'), *q = strrchr(now, '/');
+        return strcmp(p != NULL ? p : was, q != NULL ? q : now) == 0;
+    }
+    return strcmp(was, now) == 0;
+}
+
+/* The first difference between two nodes, NULL when there is none. */
+static char *difference_find(const char *path, const struct yaml_tree_node *was,
+                             const struct yaml_tree_node *now)
+{
+    for (size_t k = 0; k < sizeof may_differ / sizeof *may_differ; k++)
+        if (strcmp(path, may_differ[k]) == 0)
+            return NULL;
+    if (was == NULL || now == NULL || was->kind != now->kind ||
+        (was->kind == YAML_TREE_LIST && was->n != now->n))
+        return difference_report(path, was, now);
+    if (was->kind == YAML_TREE_SCALAR)
+        return scalars_equal(was->key, was->text, now->text)
+                   ? NULL
+                   : difference_report(path, was, now);
+    char *found = NULL;
+    int i = 0;
+    const struct yaml_tree_node *other = now->first;
+    for (const struct yaml_tree_node *p = was->first; p != NULL && found == NULL;
+         p = p->next, i++) {
+        char *inner = p->key != NULL
+                          ? array_format("%s%s%s", path, path[0] != '\0' ? "." : "", p->key)
+                          : array_format("%s.%d", path, i);
+        found = difference_find(inner, p, p->key != NULL ? yaml_tree_find(now, p->key) : other);
+        other = other != NULL ? other->next : NULL;
+        free(inner);
+    }
+    for (const struct yaml_tree_node *q = now->kind == YAML_TREE_MAPPING ? now->first : NULL;
+         q != NULL && found == NULL; q = q->next) {
+        if (yaml_tree_find(was, q->key) == NULL) {
+            char *inner = array_format("%s%s%s", path, path[0] != '\0' ? "." : "", q->key);
+            found = difference_find(inner, NULL, q);
+            free(inner);
+        }
+    }
+    return found;
+}
+
+char *job_difference(const char *was, const char *now)
+{
+    struct mistakes mistakes;
+    struct yaml_tree before, after;
+    mistakes_init(&mistakes);
+    char *found;
+    if (!yaml_tree_parse(&before, "was", 1, was, strlen(was), &mistakes))
+        found = array_string("the job: was not readable, now is");
+    else if (!yaml_tree_parse(&after, "now", 1, now, strlen(now), &mistakes))
+        found = array_string("the job: was readable, now is not");
+    else {
+        found = difference_find("", before.root, after.root);
+        yaml_tree_clear(&after);
+    }
+    yaml_tree_clear(&before);
+    mistakes_clear(&mistakes);
+    return found;
+}

@@ -1,0 +1,412 @@
+/*
+ * Every check finds the place of its message by the path of the key ("spheres.0.packing.spacing") in
+ * the tree that the file gave; where the key is not written, the nearest thing around it stands for it.
+ */
+#include "job/job_check.h"
+
+#include <errno.h>
+#include <math.h>
+#include <stdarg.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/report.h"
+#include "job/job.h"
+#include "job/schema.h"
+#include "job/yaml_tree.h"
+
+struct check {
+    const struct job *job;
+    const struct yaml_tree_node *root;
+    struct mistakes *mistakes;
+    int n_before; /* mistakes that the schema listed */
+    bool *used;
+};
+
+/* Lists "path: what; expected" at the place of the path. */
+static void mistake(const struct check *check, const char *path, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+static void mistake(const struct check *check, const char *path, const char *format, ...)
+{
+    const struct yaml_tree_node *node = yaml_tree_nearest(check->root, path);
+    char text[512];
+    va_list arguments;
+    va_start(arguments, format);
+    vsnprintf(text, sizeof text, format, arguments);
+    va_end(arguments);
+    mistakes_add(check->mistakes, node->file, node->line, node->column, "%s %s", path, text);
+}
+
+/* Did the schema find nothing wrong below this path? */
+static bool is_clean(const struct check *check, const char *path)
+{
+    for (int i = 0; i < check->n_before; i++)
+        if (strstr(check->mistakes->list[i].text, path) != NULL)
+            return false;
+    return true;
+}
+
+#define PATH(...) snprintf(path, sizeof path, __VA_ARGS__)
+
+/* ------------------------------------------------------------------------------- time, names */
+
+static void time_check(const struct check *check)
+{
+    const double end = check->job->time.end, step = check->job->time.step;
+    if (!is_clean(check, "time") || step == 0.0)
+        return;
+    const double n_steps = end / step;
+    char a[SCHEMA_DOUBLE], b[SCHEMA_DOUBLE];
+    if (!(n_steps <= 1e15)) {
+        mistake(check, "time.end", "is more than 1e15 steps away; fewer are expected");
+        return;
+    }
+    const double whole = (double)(int64_t)(n_steps + 0.5);
+    if (whole < 1.0 || !(fabs(n_steps - whole) <= 1e-9 * n_steps))
+        mistake(check, "time.end",
+                "is %s s, which is not a whole number of steps of %s s; a multiple is expected",
+                schema_double(a, end), schema_double(b, step));
+}
+
+/* A name and where it stands in its list. */
+struct named {
+    const char *name;
+    int i;
+};
+
+static int compare_names(const void *a, const void *b)
+{
+    const struct named *p = a, *q = b;
+    const int order = strcmp(p->name, q->name);
+    return order != 0 ? order : p->i - q->i;
+}
+
+/* Lists names that a list holds twice; a name is the first member of each element. */
+static void names_check(const struct check *check, const char *list, int n,
+                        const void *elements, size_t size)
+{
+    struct named *names = array_allocate((size_t)n, sizeof *names);
+    int n_names = 0;
+    for (int i = 0; i < n; i++) {
+        const char *name =
+            *(char *const *)(const void *)((const char *)elements + (size_t)i * size);
+        if (name != NULL)
+            names[n_names++] = (struct named){name, i};
+    }
+    qsort(names, (size_t)n_names, sizeof *names, compare_names);
+    for (int k = 1; k < n_names; k++) {
+        char path[64];
+        PATH("%s.%d.name", list, names[k].i);
+        if (strcmp(names[k - 1].name, names[k].name) == 0)
+            mistake(check, path, "is '%s' like that of %s.%d; a name of its own is expected",
+                    names[k].name, list, names[k - 1].i);
+    }
+    free(names);
+}
+
+/* ------------------------------------------------------------------------------- CSV files */
+
+/* Column of a name in a comma-separated line, -1 where there is none. */
+static int column_find(const char *line, const char *name)
+{
+    const size_t length = strlen(name);
+    for (int column = 0;; column++) {
+        const size_t width = strcspn(line, ",\r\n");
+        const size_t blank = strspn(line, " \t");
+        if (width >= blank + length && strncmp(line + blank, name, length) == 0 &&
+            strspn(line + blank + length, " \t") == width - blank - length)
+            return column;
+        if (line[width] != ',')
+            return -1;
+        line += width + 1;
+    }
+}
+
+/* The material that a line names in a column, -1 where there is no such material. */
+static int material_find(const struct job *job, const char *line, int column)
+{
+    for (int k = 0; k < column; k++) {
+        line += strcspn(line, ",\r\n");
+        line += *line == ',';
+    }
+    line += strspn(line, " \t");
+    size_t length = strcspn(line, ",\r\n");
+    while (length > 0 && (line[length - 1] == ' ' || line[length - 1] == '\t'))
+        length--;
+    for (int m = 0; m < job->n_materials; m++)
+        if (strncmp(job->materials[m].name, line, length) == 0 &&
+            job->materials[m].name[length] == '\0')
+            return m;
+    return -1;
+}
+
+/* Marks the materials that the lines of a file name. */
+static void csv_materials(const struct check *check, const char *file, FILE *in, int column,
+                          bool *group)
+{
+    char *line = NULL;
+    size_t size = 0;
+    int n_unknown = 0;
+    for (int number = 2; n_unknown < 20 && getline(&line, &size, in) > 0; number++) {
+        if (line[strspn(line, " \t\r\n")] == '\0')
+            continue;
+        const int material = material_find(check->job, line, column);
+        if (material >= 0) {
+            group[material] = true;
+        } else {
+            mistakes_add(
+                check->mistakes, file, number, 1,
+                "there is no such material as in column %d; one of the job is expected",
+                column + 1);
+            n_unknown++;
+        }
+    }
+    free(line);
+}
+
+/* Looks at the file of a group: can it be read, does it have the columns that are needed, which
+ * materials does it name?  The numbers are read when the spheres are made. */
+static void csv_check(const struct check *check, int i, bool *group)
+{
+    const struct job_spheres *spheres = &check->job->spheres[i];
+    char path[64], *header = NULL;
+    size_t size = 0;
+    PATH("spheres.%d.packing.file", i);
+    FILE *in = fopen(spheres->file, "r");
+    if (in == NULL || getline(&header, &size, in) <= 0) {
+        mistake(check, path, "is '%.200s', which cannot be read: %s; a CSV file is expected",
+                spheres->file, in == NULL ? strerror(errno) : "there is nothing in it");
+    } else {
+        if (column_find(header, "x_m") < 0 || column_find(header, "y_m") < 0 ||
+            column_find(header, "z_m") < 0)
+            mistakes_add(
+                check->mistakes, spheres->file, 1, 1,
+                "the columns x_m, y_m and z_m are not all there; a first line that names them "
+                "is expected");
+        PATH("spheres.%d.radius", i);
+        if (spheres->radius == 0.0 && column_find(header, "radius_m") < 0)
+            mistake(check, path,
+                    "is missing, and %.200s has no column radius_m; one of them is expected",
+                    spheres->file);
+        const int column = column_find(header, "material");
+        if (column >= 0)
+            csv_materials(check, spheres->file, in, column, group);
+        else if (spheres->material >= 0)
+            group[spheres->material] = true;
+    }
+    free(header);
+    if (in != NULL)
+        fclose(in);
+}
+
+/* ------------------------------------------------------------------------------- spheres, bodies */
+
+static void lattice_check(const struct check *check, int i)
+{
+    const struct job_spheres *spheres = &check->job->spheres[i];
+    const double diameter = 2.0 * spheres->radius;
+    char path[64], number[SCHEMA_DOUBLE];
+    PATH("spheres.%d.radius", i);
+    if (spheres->radius == 0.0) {
+        mistake(check, path, "is missing; a length above 0 m is expected");
+        return;
+    }
+    PATH("spheres.%d.packing.spacing", i);
+    if (spheres->spacing < diameter * (1.0 - 1e-12))
+        mistake(check, path, "makes spheres overlap; at least two radii, %s m, are expected",
+                schema_double(number, diameter));
+    PATH("spheres.%d.packing.size", i);
+    if (spheres->size[0] < diameter * (1.0 - 1e-12) ||
+        spheres->size[1] < diameter * (1.0 - 1e-12))
+        mistake(check, path,
+                "is narrower than a sphere; at least two radii, %s m, are expected",
+                schema_double(number, diameter));
+}
+
+static void spheres_check(const struct check *check, bool read_files, bool *falling)
+{
+    const struct job *job = check->job;
+    double total = 0.0;
+    for (int i = 0; i < job->n_spheres; i++) {
+        char path[64];
+        PATH("spheres.%d.", i);
+        if (!is_clean(check, path))
+            continue;
+        check->used[job->spheres[i].material] = true; /* even where a CSV file names others */
+        if (job->spheres[i].packing == JOB_PACKING_LATTICE)
+            lattice_check(check, i);
+        if (job->spheres[i].packing == JOB_PACKING_CSV && read_files)
+            csv_check(check, i, falling);
+        else
+            falling[job->spheres[i].material] = true;
+        total += (double)job->spheres[i].count;
+    }
+    if (total > 2147483648.0)
+        mistake(check, "spheres", "are more than 2147483648 in all; fewer are expected");
+}
+
+static void box_check(const struct check *check, const struct job_body *body, int i)
+{
+    char path[64];
+    PATH("bodies.%d.geometry.max", i);
+    if (!(body->min.x < body->max.x && body->min.y < body->max.y && body->min.z < body->max.z))
+        mistake(check, path, "is not above min in x, y and z; a greater corner is expected");
+    PATH("bodies.%d.geometry.open", i);
+    if (body->open == 63)
+        mistake(check, path, "leaves no side; at most five open sides are expected");
+}
+
+static void hopper_check(const struct check *check, const struct job_body *body, int i)
+{
+    char path[64];
+    PATH("bodies.%d.geometry.z", i);
+    if (!(body->z[0] < body->z[1]))
+        mistake(check, path,
+                "does not ascend; the outlet's height and a greater one are expected");
+}
+
+static struct vec3 corner_product(const struct job_body *body, const int *facet, int a, int b,
+                                  int c)
+{
+    const struct vec3 *p = body->vertices;
+    return vec3_cross(vec3_sub(p[facet[b]], p[facet[a]]), vec3_sub(p[facet[c]], p[facet[a]]));
+}
+
+/* What is wrong with a facet; NULL when nothing is. */
+static const char *facet_fault(const struct job_body *body, const int *facet)
+{
+    const int n = facet[3] < 0 ? 3 : 4;
+    for (int a = 0; a < n; a++) {
+        if (facet[a] >= body->n_vertices)
+            return "names a vertex that is not there";
+        for (int b = 0; b < a; b++)
+            if (facet[a] == facet[b])
+                return "names a vertex twice";
+    }
+    if (vec3_norm(corner_product(body, facet, 0, 1, 2)) == 0.0 ||
+        (n == 4 && vec3_norm(corner_product(body, facet, 0, 2, 3)) == 0.0))
+        return "has no area";
+    return NULL;
+}
+
+static void mesh_check(const struct check *check, const struct job_body *body, int i)
+{
+    char path[64];
+    PATH("bodies.%d.geometry.facets", i);
+    if (body->n_facets == 0)
+        mistake(check, path, "is empty; at least one facet is expected");
+    int n_wrong = 0;
+    for (int f = 0; f < body->n_facets && n_wrong < 20; f++) {
+        const char *fault = facet_fault(body, body->facets[f]);
+        PATH("bodies.%d.geometry.facets.%d", i, f);
+        if (fault != NULL) {
+            mistake(check, path,
+                    "%s; 3 or 4 different vertices from 0 to %d that span an area are expected",
+                    fault, body->n_vertices - 1);
+            n_wrong++;
+        }
+    }
+}
+
+static void bodies_check(const struct check *check, bool *standing)
+{
+    const struct job *job = check->job;
+    for (int i = 0; i < job->n_bodies; i++) {
+        const struct job_body *body = &job->bodies[i];
+        char path[64];
+        PATH("bodies.%d.", i);
+        if (!is_clean(check, path))
+            continue;
+        standing[body->material] = true;
+        if (body->geometry == JOB_GEOMETRY_BOX)
+            box_check(check, body, i);
+        else if (body->geometry == JOB_GEOMETRY_HOPPER)
+            hopper_check(check, body, i);
+        else if (body->geometry == JOB_GEOMETRY_MESH)
+            mesh_check(check, body, i);
+        PATH("bodies.%d.motion.stop", i);
+        if (!(body->start < body->stop))
+            mistake(check, path, "is not after start; a later time is expected");
+    }
+}
+
+static void domain_check(const struct check *check)
+{
+    const struct job *job = check->job;
+    const struct yaml_tree_node *domain = yaml_tree_find(check->root, "domain");
+    const bool min = yaml_tree_find(domain, "min") != NULL,
+               max = yaml_tree_find(domain, "max") != NULL;
+    if (!is_clean(check, "domain"))
+        return;
+    if (min != max)
+        mistake(check, min ? "domain.max" : "domain.min",
+                "is missing; both corners, or none, are expected");
+    else if (min &&
+             !(job->domain.min.x < job->domain.max.x && job->domain.min.y < job->domain.max.y &&
+               job->domain.min.z < job->domain.max.z))
+        mistake(check, "domain.max",
+                "is not above min in x, y and z; a greater corner is expected");
+}
+
+/* ------------------------------------------------------------------------------- pairs */
+
+/* Lists pairs of materials that are given twice or are missing.  `falling` are the spheres' materials,
+ * `standing` those of bodies. */
+static void pairs_check(const struct check *check, const bool *falling, const bool *standing)
+{
+    const struct job *job = check->job;
+    const size_t n = (size_t)job->n_materials;
+    int *given = array_allocate(n * n, sizeof *given); /* which pair says it, from 1 */
+    for (int k = 0; k < job->n_pairs; k++) {
+        const struct job_pair *pair = &job->pairs[k];
+        char path[64];
+        PATH("contact.pairs.%d", k);
+        if (pair->a < 0 || pair->b < 0)
+            continue;
+        const size_t a = (size_t)(pair->a < pair->b ? pair->a : pair->b);
+        const size_t b = (size_t)(pair->a < pair->b ? pair->b : pair->a);
+        if (given[a * n + b] != 0)
+            mistake(check, path,
+                    "is about the same materials as contact.pairs.%d; one pair is expected",
+                    given[a * n + b] - 1);
+        given[a * n + b] = k + 1;
+    }
+    for (size_t a = 0; a < n && is_clean(check, "contact"); a++) {
+        for (size_t b = a; b < n; b++) {
+            const bool meet =
+                (falling[a] && (falling[b] || standing[b])) || (standing[a] && falling[b]);
+            const char *p = job->materials[a].name, *q = job->materials[b].name;
+            if (meet && given[a * n + b] == 0)
+                mistake(
+                    check, "contact.pairs",
+                    "say nothing about %s and %s, which can meet; {between: [%s, %s], friction: ..., "
+                    "restitution: ...} is expected",
+                    p, q, p, q);
+        }
+    }
+    free(given);
+}
+
+void job_check(const struct job *job, const struct yaml_tree_node *root, bool read_files,
+               bool *used, struct mistakes *mistakes)
+{
+    const struct check check = {job, root, mistakes, mistakes->n, used};
+    bool *falling = array_allocate((size_t)job->n_materials, sizeof *falling);
+    bool *standing = array_allocate((size_t)job->n_materials, sizeof *standing);
+    time_check(&check);
+    names_check(&check, "spheres", job->n_spheres, job->spheres, sizeof *job->spheres);
+    names_check(&check, "bodies", job->n_bodies, job->bodies, sizeof *job->bodies);
+    names_check(&check, "sections", job->n_sections, job->sections, sizeof *job->sections);
+    spheres_check(&check, read_files, falling);
+    bodies_check(&check, standing);
+    domain_check(&check);
+    pairs_check(&check, falling, standing);
+    for (int m = 0; m < job->n_materials; m++)
+        used[m] = used[m] || falling[m] || standing[m];
+    free(falling);
+    free(standing);
+}

@@ -1,0 +1,316 @@
+/*
+ * Every key of a job file: type, unit, bounds, default, meaning.  The checks, the messages, the job as
+ * used and the reference page (jobs/README.md) all come from here; adding a key is adding a row.
+ *
+ * The bounds on lengths and speeds are far beyond any use: they keep sums and squares finite.
+ */
+#include "job/job_keys.h"
+
+#include <math.h>
+
+#include "job/job.h"
+
+#define FAR 1e6 /* [m], [m/s], [rad/s] */
+
+/* Where a member of a struct lies. */
+#define AT(type, member) .offset = offsetof(type, member), .size = sizeof(((type *)0)->member)
+#define GIVEN(type, member)                                                                    \
+    .given = offsetof(type, member), .given_size = sizeof(((type *)0)->member)
+#define LIST_AT(type, member, n)                                                               \
+    .offset = offsetof(type, member), .count = offsetof(type, n),                              \
+    .element = sizeof *((type *)0)->member
+
+#define AT_LEAST(low) .bounds = SCHEMA_AT_LEAST, .min = (low)
+#define ABOVE(low)    .bounds = SCHEMA_ABOVE, .min = (low)
+#define BETWEEN(low, high)                                                                     \
+    .bounds = SCHEMA_AT_LEAST | SCHEMA_AT_MOST, .min = (low), .max = (high)
+#define ABOVE_TO(low, high) .bounds = SCHEMA_ABOVE | SCHEMA_AT_MOST, .min = (low), .max = (high)
+#define INSIDE(low, high)   .bounds = SCHEMA_ABOVE | SCHEMA_BELOW, .min = (low), .max = (high)
+
+#define ZERO       "[0, 0, 0]"
+#define KIND(kind) (1u << (kind))
+#define END                                                                                    \
+    {                                                                                          \
+        .name = NULL                                                                           \
+    }
+
+static const char *const dimensions[] = {"3", NULL};
+static const char *const laws[] = {"hertz-mindlin", NULL};
+static const char *const models[] = {"rigid", NULL};
+static const char *const packings[] = {"lattice", "csv", NULL};
+static const char *const geometries[] = {"plane", "box", "hopper", "mesh", NULL};
+static const char *const sides[] = {"x_min", "x_max", "y_min", "y_max", "bottom", "top", NULL};
+static const char *const leavers[] = {"stop", "remove", "ignore", NULL};
+static const char *const weights[] = {"contacts", "candidates", NULL};
+static const char *const searches[] = {"auto", "all-pairs", NULL};
+
+static const struct schema_key time_keys[] = {
+    {"end", SCHEMA_NUMBER, "simulated time at which the run ends; a whole number of steps",
+     .unit = "s", .required = true, ABOVE_TO(0.0, 1e9), AT(struct job, time.end)},
+    {"step", SCHEMA_NUMBER,
+     "time step; `auto` takes `safety` times the critical step of the scene", .unit = "s",
+     .standard = "auto", ABOVE_TO(0.0, 1e3), .word = "auto", .word_value = 0.0,
+     AT(struct job, time.step)},
+    {"safety", SCHEMA_NUMBER, "share of the critical step that `step: auto` takes", .unit = "1",
+     .standard = "0.2", ABOVE_TO(0.0, 1.0), AT(struct job, time.safety)},
+    END};
+
+static const struct schema_key material_keys[] = {
+    {"density", SCHEMA_NUMBER, "mass per volume of the solid", .unit = "kg/m3",
+     .required = true, ABOVE_TO(0.0, 1e9), AT(struct job_material, density)},
+    {"young", SCHEMA_NUMBER, "Young's modulus", .unit = "Pa", .required = true,
+     ABOVE_TO(0.0, 1e15), AT(struct job_material, young)},
+    {"poisson", SCHEMA_NUMBER, "Poisson's ratio", .unit = "1", .required = true,
+     INSIDE(-1.0, 0.5), AT(struct job_material, poisson)},
+    END};
+
+static const struct schema_key pair_keys[] = {
+    {"between", SCHEMA_REFERENCE, "the two materials, in any order; may be the same one twice",
+     .required = true, .offset = offsetof(struct job_pair, a), .size = 2 * sizeof(int)},
+    {"friction", SCHEMA_NUMBER, "Coulomb's coefficient of friction", .unit = "1",
+     .required = true, BETWEEN(0.0, 100.0), AT(struct job_pair, friction)},
+    {"restitution", SCHEMA_NUMBER,
+     "speed after over speed before a straight impact: what comes out, damping is chosen for it",
+     .unit = "1", .required = true, BETWEEN(0.05, 1.0), AT(struct job_pair, restitution)},
+    END};
+
+static const struct schema_key contact_keys[] = {
+    {"law", SCHEMA_CHOICE, "the contact law", .standard = "hertz-mindlin", .choices = laws},
+    {"ledger", SCHEMA_FLAG,
+     "keep account of energy: kinetic, potential, elastic, dissipated, work; costs little",
+     .standard = "true", AT(struct job, energy_ledger)},
+    {"pairs", SCHEMA_LIST,
+     "what happens between two materials; every two that can meet need one (spheres among each other, "
+     "spheres with bodies)",
+     BETWEEN(0.0, JOB_KEYS_MAX_PAIRS), .inside = pair_keys,
+     LIST_AT(struct job, pairs, n_pairs)},
+    END};
+
+static const struct schema_key packing_keys[] = {
+    {"kind", SCHEMA_CHOICE, "how the group is placed at the start", .required = true,
+     .choices = packings, AT(struct job_spheres, packing)},
+    {"count", SCHEMA_COUNT, "number of spheres: rows along x, then y, then layers along z",
+     .required = true, BETWEEN(1.0, 2147483648.0), .kinds = KIND(JOB_PACKING_LATTICE),
+     AT(struct job_spheres, count)},
+    {"spacing", SCHEMA_NUMBER, "distance between neighbouring centres; at least two radii",
+     .unit = "m", .required = true, ABOVE_TO(0.0, FAR), .kinds = KIND(JOB_PACKING_LATTICE),
+     AT(struct job_spheres, spacing)},
+    {"corner", SCHEMA_NUMBER, "least coordinates that the surfaces of the spheres touch",
+     .unit = "m", .required = true, BETWEEN(-FAR, FAR), .kinds = KIND(JOB_PACKING_LATTICE),
+     AT(struct job_spheres, corner)},
+    {"size", SCHEMA_NUMBER, "width of a layer along x and y", .unit = "m", .required = true,
+     ABOVE_TO(0.0, FAR), .kinds = KIND(JOB_PACKING_LATTICE), AT(struct job_spheres, size)},
+    {"file", SCHEMA_FILE,
+     "CSV file, relative to the job file; its first line names the columns: x_m, y_m, z_m and, if "
+     "wanted, radius_m, material, vx_m_s, vy_m_s, vz_m_s",
+     .required = true, .kinds = KIND(JOB_PACKING_CSV), AT(struct job_spheres, file)},
+    END};
+
+static const struct schema_key spheres_keys[] = {
+    {"name", SCHEMA_NAME, "name of the group, used once", .required = true,
+     AT(struct job_spheres, name)},
+    {"material", SCHEMA_REFERENCE, "material (where a CSV file does not name one)",
+     .required = true, AT(struct job_spheres, material)},
+    {"radius", SCHEMA_NUMBER,
+     "radius; may be left out where a CSV file has the column radius_m", .unit = "m",
+     ABOVE_TO(0.0, FAR), GIVEN(struct job_spheres, radius), AT(struct job_spheres, radius)},
+    {"velocity", SCHEMA_NUMBER, "velocity at the start (where a CSV file does not give it)",
+     .unit = "m/s", .standard = ZERO, BETWEEN(-FAR, FAR), AT(struct job_spheres, velocity)},
+    {"spin", SCHEMA_NUMBER, "angular velocity at the start", .unit = "rad/s", .standard = ZERO,
+     BETWEEN(-FAR, FAR), AT(struct job_spheres, spin)},
+    {"packing", SCHEMA_GROUP, "where the spheres are at the start", .required = true,
+     .inside = packing_keys},
+    END};
+
+static const struct schema_key geometry_keys[] = {
+    {"kind", SCHEMA_CHOICE, "the shape", .required = true, .choices = geometries,
+     AT(struct job_body, geometry)},
+    {"point", SCHEMA_NUMBER, "centre of the square", .unit = "m", .required = true,
+     BETWEEN(-FAR, FAR), .kinds = KIND(JOB_GEOMETRY_PLANE), AT(struct job_body, point)},
+    {"normal", SCHEMA_DIRECTION, "direction that the square faces", .required = true,
+     .kinds = KIND(JOB_GEOMETRY_PLANE), AT(struct job_body, normal)},
+    {"extent", SCHEMA_NUMBER, "edge of the square", .unit = "m", .required = true,
+     ABOVE_TO(0.0, FAR), .kinds = KIND(JOB_GEOMETRY_PLANE), AT(struct job_body, extent)},
+    {"min", SCHEMA_NUMBER, "least corner of the box", .unit = "m", .required = true,
+     BETWEEN(-FAR, FAR), .kinds = KIND(JOB_GEOMETRY_BOX), AT(struct job_body, min)},
+    {"max", SCHEMA_NUMBER, "greatest corner of the box", .unit = "m", .required = true,
+     BETWEEN(-FAR, FAR), .kinds = KIND(JOB_GEOMETRY_BOX), AT(struct job_body, max)},
+    {"open", SCHEMA_CHOICES, "sides that are left open", .standard = "[]", .choices = sides,
+     .kinds = KIND(JOB_GEOMETRY_BOX), AT(struct job_body, open)},
+    {"top", SCHEMA_NUMBER, "widths of the upper opening along x and y", .unit = "m",
+     .required = true, ABOVE_TO(0.0, FAR), .kinds = KIND(JOB_GEOMETRY_HOPPER),
+     AT(struct job_body, top)},
+    {"outlet", SCHEMA_NUMBER, "widths of the outlet along x and y", .unit = "m",
+     .required = true, ABOVE_TO(0.0, FAR), .kinds = KIND(JOB_GEOMETRY_HOPPER),
+     AT(struct job_body, outlet)},
+    {"z", SCHEMA_NUMBER, "heights of the outlet and of the upper opening", .unit = "m",
+     .required = true, BETWEEN(-FAR, FAR), .kinds = KIND(JOB_GEOMETRY_HOPPER),
+     AT(struct job_body, z)},
+    {"centre", SCHEMA_NUMBER, "x and y of the hopper's axis", .unit = "m", .standard = "[0, 0]",
+     BETWEEN(-FAR, FAR), .kinds = KIND(JOB_GEOMETRY_HOPPER), AT(struct job_body, centre)},
+    {"vertices", SCHEMA_POINTS, "corners of the facets", .unit = "m", .required = true,
+     BETWEEN(-FAR, FAR), .kinds = KIND(JOB_GEOMETRY_MESH),
+     LIST_AT(struct job_body, vertices, n_vertices)},
+    {"facets", SCHEMA_FACETS,
+     "triangles and quads as vertex numbers from 0, counter-clockwise seen from outside",
+     .required = true, BETWEEN(0.0, 2147483647.0), .kinds = KIND(JOB_GEOMETRY_MESH),
+     LIST_AT(struct job_body, facets, n_facets)},
+    END};
+
+static const struct schema_key rotation_keys[] = {
+    {"point", SCHEMA_NUMBER, "a point of the axis at time 0 (it moves with `velocity`)",
+     .unit = "m", .required = true, BETWEEN(-FAR, FAR), AT(struct job_body, pivot)},
+    {"axis", SCHEMA_DIRECTION, "direction of the axis; the right hand's thumb",
+     .required = true, AT(struct job_body, axis)},
+    {"rate", SCHEMA_NUMBER, "angular velocity about the axis", .unit = "rad/s",
+     .required = true, BETWEEN(-FAR, FAR), AT(struct job_body, rate)},
+    END};
+
+static const struct schema_key motion_keys[] = {
+    {"velocity", SCHEMA_NUMBER, "velocity of translation", .unit = "m/s", .standard = ZERO,
+     BETWEEN(-FAR, FAR), AT(struct job_body, velocity)},
+    {"rotation", SCHEMA_GROUP, "rotation about an axis", .inside = rotation_keys,
+     GIVEN(struct job_body, axis)},
+    {"start", SCHEMA_NUMBER, "when the motion begins", .unit = "s", .standard = "0",
+     BETWEEN(0.0, 1e9), AT(struct job_body, start)},
+    {"stop", SCHEMA_NUMBER, "when it ends", .unit = "s", .standard = "never", AT_LEAST(0.0),
+     .word = "never", .word_value = INFINITY, AT(struct job_body, stop)},
+    END};
+
+static const struct schema_key body_keys[] = {
+    {"name", SCHEMA_NAME, "name of the body, used once", .required = true,
+     AT(struct job_body, name)},
+    {"material", SCHEMA_REFERENCE, "material of its surface", .required = true,
+     AT(struct job_body, material)},
+    {"model", SCHEMA_CHOICE, "how it deforms: not at all", .standard = "rigid",
+     .choices = models},
+    {"geometry", SCHEMA_GROUP, "its surface", .required = true, .inside = geometry_keys},
+    {"motion", SCHEMA_GROUP, "how it moves; at rest when left out", .inside = motion_keys},
+    END};
+
+static const struct schema_key section_keys[] = {
+    {"name", SCHEMA_NAME, "name of the section, used once", .required = true,
+     AT(struct job_section, name)},
+    {"point", SCHEMA_NUMBER, "a point of the plane", .unit = "m", .required = true,
+     BETWEEN(-FAR, FAR), AT(struct job_section, point)},
+    {"normal", SCHEMA_DIRECTION, "direction that counts as forward", .required = true,
+     AT(struct job_section, normal)},
+    END};
+
+static const struct schema_key domain_keys[] = {
+    {"min", SCHEMA_NUMBER,
+     "least corner of the region that spheres may be in; by default the scene's extent, grown by its size",
+     .unit = "m", BETWEEN(-FAR, FAR), GIVEN(struct job, domain.given),
+     AT(struct job, domain.min)},
+    {"max", SCHEMA_NUMBER, "greatest corner of that region", .unit = "m", BETWEEN(-FAR, FAR),
+     GIVEN(struct job, domain.given), AT(struct job, domain.max)},
+    {"leavers", SCHEMA_CHOICE,
+     "what a sphere that leaves the region does: stop the run, get removed, or go on",
+     .standard = "stop", .choices = leavers, AT(struct job, domain.leavers)},
+    END};
+
+static const struct schema_key decomposition_keys[] = {
+    {"buffer", SCHEMA_NUMBER,
+     "width of the buffer zone around a subdomain; larger means rarer redistribution and more copies; "
+     "`auto` is half of the mean radius",
+     .unit = "m", .standard = "auto", ABOVE_TO(0.0, FAR), .word = "auto", .word_value = 0.0,
+     AT(struct job, decomposition.buffer)},
+    {"imbalance", SCHEMA_NUMBER, "largest over mean run time of the ranks that moves the boxes",
+     .unit = "1", .standard = "1.1", BETWEEN(1.0, 1e6),
+     AT(struct job, decomposition.imbalance)},
+    {"weights", SCHEMA_CHOICE,
+     "what a sphere weighs besides itself: its contacts or its candidates",
+     .standard = "contacts", .choices = weights, AT(struct job, decomposition.weights)},
+    {"grid", SCHEMA_INT,
+     "a fixed grid of equal subdomains along x, y and z, never rebalanced; their number must be that of "
+     "the ranks",
+     BETWEEN(1.0, 1000.0), GIVEN(struct job, decomposition.fixed),
+     AT(struct job, decomposition.fixed)},
+    END};
+
+static const struct schema_key testing_keys[] = {
+    {"search", SCHEMA_CHOICE, "how contacts are found", .standard = "auto", .choices = searches,
+     AT(struct job, force.search)},
+    {"search_every", SCHEMA_COUNT, "force a search every so many steps; 0: only when due",
+     .standard = "0", BETWEEN(0.0, 1e15), AT(struct job, force.search_every)},
+    {"redistribute_every", SCHEMA_COUNT,
+     "force the high level of redistribution likewise; 0: when due", .standard = "0",
+     BETWEEN(0.0, 1e15), AT(struct job, force.redistribute_every)},
+    {"repartition_every", SCHEMA_COUNT, "force the low level likewise; 0: when due",
+     .standard = "0", BETWEEN(0.0, 1e15), AT(struct job, force.repartition_every)},
+    END};
+
+static const struct schema_key every_keys[] = {
+    {"wall", SCHEMA_NUMBER, "wall-clock time between checkpoints; 0: not by the clock",
+     .unit = "s", .standard = "600", BETWEEN(0.0, 1e9), AT(struct job, checkpoint.every_wall)},
+    {"steps", SCHEMA_COUNT, "steps between checkpoints; 0: not by steps", .standard = "0",
+     BETWEEN(0.0, 1e15), AT(struct job, checkpoint.every_steps)},
+    END};
+
+static const struct schema_key checkpoint_keys[] = {
+    {"every", SCHEMA_GROUP, "when a checkpoint is due; one is always written at the end",
+     .inside = every_keys},
+    {"keep", SCHEMA_INT, "how many of the newest are kept", .standard = "3", BETWEEN(1.0, 1e6),
+     AT(struct job, checkpoint.keep)},
+    END};
+
+static const struct schema_key series_keys[] = {
+    {"every", SCHEMA_NUMBER,
+     "simulated time between records, rounded to whole steps (at least one)", .unit = "s",
+     .standard = "0.01", ABOVE_TO(0.0, 1e9), AT(struct job, output.series_every)},
+    END};
+
+static const struct schema_key output_keys[] = {
+    {"series", SCHEMA_GROUP, "energies, forces on bodies, passages through sections over time",
+     .inside = series_keys},
+    END};
+
+static const struct schema_key watch_keys[] = {
+    {"overlap", SCHEMA_NUMBER, "largest overlap over radius that a run goes on with",
+     .unit = "1", .standard = "0.1", ABOVE_TO(0.0, 1.0), AT(struct job, watch.overlap)},
+    {"motion", SCHEMA_NUMBER, "largest motion in one step over radius", .unit = "1",
+     .standard = "0.1", ABOVE_TO(0.0, 1.0), AT(struct job, watch.motion)},
+    {"energy", SCHEMA_NUMBER,
+     "largest error of the energy balance over the energy turned over; 0: not watched",
+     .unit = "1", .standard = "0", BETWEEN(0.0, 1e6), AT(struct job, watch.energy)},
+    END};
+
+const struct schema_key job_keys[] = {
+    {"title", SCHEMA_TEXT, "what people call the job", .standard = "", AT(struct job, title)},
+    {"dimension", SCHEMA_CHOICE, "spheres move in three dimensions", .standard = "3",
+     .choices = dimensions},
+    {"include", SCHEMA_INCLUDE,
+     .help =
+         "libraries of materials and pairs, relative to the job file; what the job says wins, then what a "
+         "later library says"},
+    {"time", SCHEMA_GROUP, "how long and in which steps", .required = true,
+     .inside = time_keys},
+    {"gravity", SCHEMA_NUMBER, "acceleration of gravity", .unit = "m/s2",
+     .standard = "[0, 0, -9.81]", BETWEEN(-FAR, FAR), AT(struct job, gravity)},
+    {"damping", SCHEMA_NUMBER,
+     "mass-proportional damping: a force of -damping x mass x velocity on every sphere",
+     .unit = "1/s", .standard = "0", BETWEEN(0.0, 1e9), AT(struct job, damping)},
+    {"materials", SCHEMA_NAMED, "materials by name; those that nothing uses are left out",
+     .required = true, .inside = material_keys, LIST_AT(struct job, materials, n_materials)},
+    {"contact", SCHEMA_GROUP, "what happens between materials", .inside = contact_keys},
+    {"spheres", SCHEMA_LIST, "groups of spheres; ids run through them in this order",
+     .required = true, BETWEEN(1.0, 10000.0), .inside = spheres_keys,
+     LIST_AT(struct job, spheres, n_spheres)},
+    {"bodies", SCHEMA_LIST, "surfaces of quads and triangles, at rest or moving as prescribed",
+     BETWEEN(0.0, 10000.0), .inside = body_keys, LIST_AT(struct job, bodies, n_bodies)},
+    {"sections", SCHEMA_LIST, "planes that count what passes through them", BETWEEN(0.0, 60.0),
+     .inside = section_keys, LIST_AT(struct job, sections, n_sections)},
+    {"domain", SCHEMA_GROUP, "the region that spheres may be in", .inside = domain_keys},
+    {"decomposition", SCHEMA_GROUP, "how the work is shared among ranks; changes no result",
+     .inside = decomposition_keys},
+    {"checkpoint", SCHEMA_GROUP, "states on disk from which a run resumes",
+     .inside = checkpoint_keys},
+    {"output", SCHEMA_GROUP, "what is recorded", .inside = output_keys},
+    {"watch", SCHEMA_GROUP, "limits that stop a run, with the last good checkpoint kept",
+     .inside = watch_keys},
+    {"order_every", SCHEMA_COUNT,
+     "steps between renewals of the canonical order of the spheres; part of the result's last bits",
+     .standard = "4096", BETWEEN(1.0, 1e9), AT(struct job, order_every)},
+    {"testing", SCHEMA_GROUP, "for tests of reproducibility; changes no result",
+     .inside = testing_keys},
+    END};
