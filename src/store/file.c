@@ -27,7 +27,9 @@ void file_survive_size_limit(void)
 
 char *file_temporary(const char *path)
 {
-    return array_format("%s%s", path, TEMPORARY_END);
+    const char *slash = strrchr(path, '/');
+    const char *name = slash != NULL ? slash + 1 : path;
+    return array_format("%.*s.%s%s", (int)(name - path), path, name, TEMPORARY_END);
 }
 
 void file_remove_temporaries(const char *folder)
@@ -37,7 +39,8 @@ void file_remove_temporaries(const char *folder)
         return;
     for (const struct dirent *entry; (entry = readdir(entries)) != NULL;) {
         const size_t length = strlen(entry->d_name), end = sizeof TEMPORARY_END - 1;
-        if (length > end && strcmp(entry->d_name + length - end, TEMPORARY_END) == 0)
+        if (length > end && entry->d_name[0] == '.' &&
+            strcmp(entry->d_name + length - end, TEMPORARY_END) == 0)
             (void)unlinkat(dirfd(entries), entry->d_name, 0);
     }
     closedir(entries);

@@ -14,7 +14,7 @@
  * a signal that kills. */
 void file_survive_size_limit(void);
 
-/* The name under which `path` is written before it is whole; the caller frees it. */
+/* The name, a hidden one, under which `path` is written before it is whole; the caller frees it. */
 char *file_temporary(const char *path);
 /* Removes such files from a folder, left by a run that was killed. */
 void file_remove_temporaries(const char *folder);

@@ -1,6 +1,7 @@
 /*
- * The folder a run owns: RUN/job.yaml, checkpoints/, series/, log, status, lock.  Nothing is written
- * anywhere else.  All functions act on one process (rank 0) and return a REPORT_ status with the reason
+ * The folder a run owns: RUN/job.yaml, checkpoints/, series/, snapshots/, log, status, lock, and what
+ * was moved out of the way, set_aside_N/.  Nothing is written anywhere else, and a folder with other
+ * things in it is not touched.  All functions act on one process (rank 0) and return a REPORT_ status with the reason
  * said; the caller broadcasts it.
  */
 #ifndef TREMIE_STORE_RUN_FOLDER_H
@@ -22,7 +23,8 @@ struct run_folder {
  * - Another job's folder, a folder with other things in it, a read-only place, a live lock: refused
  *   (REPORT_BAD_INPUT or REPORT_STORAGE) with the difference and the remedy, nothing changed.
  */
-int run_folder_open(struct run_folder *folder, const char *path, const char *job_text, bool fresh, bool *resumes);
+int run_folder_open(struct run_folder *folder, const char *path, const char *job_text,
+                    bool fresh, bool *resumes);
 void run_folder_close(struct run_folder *folder);
 
 /* RUN/checkpoints/step_000000050000.h5 and RUN/series/step_000000050000.h5; the caller frees. */

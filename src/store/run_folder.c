@@ -1,0 +1,467 @@
+/*
+ * See run_folder.h.
+ *
+ * The lock is the kernel's (flock), so it ends with its process, however that ends; what is written in
+ * the file only tells people who holds it.  Where the file system has no locks, the process named there
+ * is looked for, which can tell only about this host.  A process that is just being killed holds its
+ * lock for a moment more, so a taken lock is tried again for half a second.
+ *
+ * A folder is looked through before anything in it is touched: one with other things than a run's in it
+ * is somebody's folder, not ours.
+ */
+#include "store/run_folder.h"
+
+#include <dirent.h>
+#include <errno.h>
+#include <fcntl.h>
+#include <inttypes.h>
+#include <signal.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <time.h>
+#include <unistd.h>
+
+#include "base/array.h"
+#include "base/report.h"
+#include "job/job.h"
+#include "store/file.h"
+
+/* What a run keeps in its folder and what moves aside when it starts over; beside these the lock, older
+ * set_aside_N and hidden files may be there. */
+static const char *const RESULTS[] = {"job.yaml",  "checkpoints", "series",
+                                      "snapshots", "log",         "status"};
+enum { N_RESULTS = sizeof RESULTS / sizeof *RESULTS };
+
+static const char *const SUBFOLDERS[] = {"checkpoints", "series"};
+enum { N_SUBFOLDERS = sizeof SUBFOLDERS / sizeof *SUBFOLDERS };
+
+static const char SET_ASIDE[] = "set_aside_";
+
+enum { JOB_TEXT_MAX = 1 << 26 };
+
+static char *path_in(const char *folder, const char *name)
+{
+    return array_format("%s/%s", folder, name);
+}
+
+static bool is_result(const char *name)
+{
+    for (int k = 0; k < N_RESULTS; k++)
+        if (strcmp(name, RESULTS[k]) == 0)
+            return true;
+    return false;
+}
+
+static bool is_ours(const char *name)
+{
+    return is_result(name) || strcmp(name, "lock") == 0 || name[0] == '.' ||
+           strncmp(name, SET_ASIDE, sizeof SET_ASIDE - 1) == 0;
+}
+
+/* ------------------------------------------------------------------------------------ a first look */
+
+struct look {
+    bool exists, has_job, has_results;
+    char *foreign; /* something that is not a run's, NULL when there is nothing */
+};
+
+/* What is there?  Nothing is changed. */
+static int look_at(const char *path, struct look *look)
+{
+    *look = (struct look){0};
+    DIR *entries = opendir(path);
+    if (entries == NULL && errno == ENOENT)
+        return REPORT_FINISHED;
+    if (entries == NULL) {
+        report_error("cannot use %s as the run's folder: %s; name another one with --out", path,
+                     strerror(errno));
+        return errno == ENOTDIR ? REPORT_BAD_INPUT : REPORT_STORAGE;
+    }
+    look->exists = true;
+    for (const struct dirent *entry; (entry = readdir(entries)) != NULL;) {
+        look->has_job = look->has_job || strcmp(entry->d_name, "job.yaml") == 0;
+        look->has_results = look->has_results || is_result(entry->d_name);
+        if (!is_ours(entry->d_name) && look->foreign == NULL)
+            look->foreign = array_string(entry->d_name);
+    }
+    closedir(entries);
+    return REPORT_FINISHED;
+}
+
+/* --------------------------------------------------------------------------------------------- lock */
+
+/* Is the process that the lock's text names alive on this host? */
+static bool holder_lives(const char *text)
+{
+    long pid = 0;
+    char host[256] = "", here[256] = "";
+    gethostname(here, sizeof here - 1);
+    return sscanf(text, "process %ld on %255s", &pid, host) == 2 && pid > 0 &&
+           strcmp(host, here) == 0 && pid != (long)getpid() && kill((pid_t)pid, 0) == 0;
+}
+
+static void read_lock(int lock, char *text, size_t size)
+{
+    const ssize_t n = pread(lock, text, size - 1, 0);
+    text[n > 0 ? n : 0] = '\0';
+    text[strcspn(text, "\n")] = '\0';
+}
+
+static void sign_lock(int lock)
+{
+    char host[256] = "", when[32] = "";
+    gethostname(host, sizeof host - 1);
+    const time_t now = time(NULL);
+    struct tm parts;
+    if (localtime_r(&now, &parts) != NULL)
+        strftime(when, sizeof when, "%Y-%m-%d %H:%M:%S", &parts);
+    char *text = array_format("process %ld on %s since %s\n", (long)getpid(), host, when);
+    /* It only informs: a full disk, which would spoil it, is met soon enough. */
+    if (ftruncate(lock, 0) == 0)
+        (void)!pwrite(lock, text, strlen(text), 0);
+    free(text);
+}
+
+/* 0 when the lock is ours now, else the error; EWOULDBLOCK: another one's. */
+static int try_lock(int lock)
+{
+    static const struct timespec pause = {.tv_nsec = 50000000};
+    enum { TRIES = 10 };
+    for (int k = 0; k < TRIES; k++) {
+        if (flock(lock, LOCK_EX | LOCK_NB) == 0)
+            return 0;
+        if (errno != EWOULDBLOCK && errno != EINTR)
+            return errno;
+        nanosleep(&pause, NULL);
+    }
+    return EWOULDBLOCK;
+}
+
+static int take_lock(struct run_folder *folder)
+{
+    char *path = path_in(folder->path, "lock"), text[512];
+    int status = REPORT_FINISHED;
+    const int lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (lock < 0) {
+        report_error("cannot write to %s: %s; name another folder with --out", folder->path,
+                     strerror(errno));
+        free(path);
+        return REPORT_STORAGE;
+    }
+    read_lock(lock, text, sizeof text);
+    const int error = try_lock(lock);
+    if (error == EWOULDBLOCK || (error != 0 && holder_lives(text))) {
+        report_error("%s is in use by %s; wait for it, or stop it with `tremie stop %s`",
+                     folder->path, text[0] != '\0' ? text : "another process", folder->path);
+        close(lock);
+        status = REPORT_BAD_INPUT;
+    } else {
+        sign_lock(lock);
+        folder->lock = lock;
+    }
+    free(path);
+    return status;
+}
+
+/* -------------------------------------------------------------------------------------- setting aside */
+
+/* A new folder RUN/set_aside_N; NULL, with the reason said, when there can be none. */
+static char *new_aside(const struct run_folder *folder)
+{
+    for (int n = 1;; n++) {
+        char *aside = array_format("%s/%s%d", folder->path, SET_ASIDE, n);
+        if (mkdir(aside, 0777) == 0)
+            return aside;
+        const int error = errno;
+        if (error != EEXIST) {
+            report_error("cannot make %s: %s", aside, strerror(error));
+            free(aside);
+            return NULL;
+        }
+        free(aside);
+    }
+}
+
+/* Moves FROM/name to TO/name; what is not there need not be moved. */
+static int move(const char *from, const char *to, const char *name)
+{
+    char *was = path_in(from, name), *is = path_in(to, name);
+    const int error = rename(was, is) != 0 && errno != ENOENT ? errno : 0;
+    if (error != 0)
+        report_error("cannot move %s to %s: %s", was, is, strerror(error));
+    free(was);
+    free(is);
+    return error != 0 ? REPORT_STORAGE : REPORT_FINISHED;
+}
+
+static int set_results_aside(const struct run_folder *folder)
+{
+    char *aside = new_aside(folder);
+    if (aside == NULL)
+        return REPORT_STORAGE;
+    int status = REPORT_FINISHED;
+    for (int k = 0; k < N_RESULTS && status == REPORT_FINISHED; k++)
+        status = move(folder->path, aside, RESULTS[k]);
+    if (status == REPORT_FINISHED)
+        report_say("starting over: what was in %s is now in %s", folder->path, aside);
+    free(aside);
+    return status;
+}
+
+/* Moves the files of RUN/name later than `step` to ASIDE/name; *aside is made when it is needed. */
+static int set_later_aside(const struct run_folder *folder, const char *name, int64_t step,
+                           char **aside, int *n_moved)
+{
+    char *from = path_in(folder->path, name), *to = NULL;
+    int64_t *steps;
+    const int n = file_steps(from, &steps);
+    int status = REPORT_FINISHED;
+    for (int i = 0; i < n && status == REPORT_FINISHED; i++) {
+        if (steps[i] <= step)
+            continue;
+        if (*aside == NULL)
+            *aside = new_aside(folder);
+        if (to == NULL && *aside != NULL) {
+            to = path_in(*aside, name);
+            (void)mkdir(to, 0777); /* where this fails so will the move, which says why */
+        }
+        char *path = file_step_path("", steps[i]);
+        status = *aside != NULL ? move(from, to, path + 1) : REPORT_STORAGE;
+        (*n_moved)++;
+        free(path);
+    }
+    free(steps);
+    free(from);
+    free(to);
+    return status;
+}
+
+int run_folder_rewind(const struct run_folder *folder, int64_t step)
+{
+    char *aside = NULL;
+    int n_moved = 0;
+    int status = set_later_aside(folder, "checkpoints", step, &aside, &n_moved);
+    if (status == REPORT_FINISHED)
+        status = set_later_aside(folder, "series", step, &aside, &n_moved);
+    if (status == REPORT_FINISHED && n_moved > 0)
+        report_say("%d files of steps after %" PRId64 " are now in %s", n_moved, step, aside);
+    free(aside);
+    return status;
+}
+
+/* ----------------------------------------------------------------------------------- open and close */
+
+static int make_folders(const char *path)
+{
+    char *why = file_make_folders(path), *failed = array_string(path);
+    for (int k = 0; k < N_SUBFOLDERS && why == NULL; k++) {
+        free(failed);
+        failed = path_in(path, SUBFOLDERS[k]);
+        why = file_make_folders(failed);
+    }
+    if (why != NULL)
+        report_error("cannot make the folder %s: %s; name another one with --out", failed, why);
+    const int status = why != NULL ? REPORT_STORAGE : REPORT_FINISHED;
+    free(failed);
+    free(why);
+    return status;
+}
+
+/* Does the folder hold this job?  Says why not. */
+static int compare_job(const struct run_folder *folder, const char *job_text)
+{
+    char *path = path_in(folder->path, "job.yaml"), *was = NULL;
+    char *why = file_read(path, JOB_TEXT_MAX, &was);
+    if (why != NULL) {
+        report_error(
+            "cannot read %s: %s; name another folder with --out, or start over with --fresh",
+            path, why);
+        free(why);
+        free(path);
+        return REPORT_STORAGE;
+    }
+    char *difference = job_difference(was, job_text);
+    if (difference != NULL)
+        report_error(
+            "%s belongs to another job: %s; name another folder with --out, or start over with "
+            "--fresh, which sets the results there aside",
+            folder->path, difference);
+    const int status = difference != NULL ? REPORT_BAD_INPUT : REPORT_FINISHED;
+    free(difference);
+    free(was);
+    free(path);
+    return status;
+}
+
+static void remove_temporaries(const struct run_folder *folder)
+{
+    file_remove_temporaries(folder->path);
+    for (int k = 0; k < N_SUBFOLDERS; k++) {
+        char *path = path_in(folder->path, SUBFOLDERS[k]);
+        file_remove_temporaries(path);
+        free(path);
+    }
+}
+
+/* With the lock held: brings the folder's content in line with the job. */
+static int settle(const struct run_folder *folder, const struct look *look,
+                  const char *job_text, bool fresh, bool *resumes)
+{
+    int status = REPORT_FINISHED;
+    if (fresh && look->has_results)
+        status = set_results_aside(folder);
+    else if (look->has_job)
+        status = compare_job(folder, job_text);
+    if (status == REPORT_FINISHED)
+        status = make_folders(folder->path);
+    if (status == REPORT_FINISHED)
+        remove_temporaries(folder);
+    if (status == REPORT_FINISHED) {
+        char *path = path_in(folder->path, "job.yaml");
+        status = run_folder_write_file(path, job_text);
+        free(path);
+    }
+    *resumes = status == REPORT_FINISHED && look->has_job && !fresh;
+    return status;
+}
+
+/* Can a run live here?  Says why not; nothing has been changed. */
+static int judge(const char *path, const struct look *look, bool fresh)
+{
+    if (look->foreign != NULL) {
+        report_error(
+            "%s holds other things than a run, %s for one; name a new or empty folder with --out",
+            path, look->foreign);
+        return REPORT_BAD_INPUT;
+    }
+    if (look->has_results && !look->has_job && !fresh) {
+        char *checkpoints = path_in(path, "checkpoints");
+        int64_t *steps;
+        const int n = file_steps(checkpoints, &steps);
+        free(steps);
+        free(checkpoints);
+        if (n > 0) {
+            report_error(
+                "%s holds checkpoints but no job.yaml that says of what; name another folder "
+                "with --out, or start over with --fresh, which sets them aside",
+                path);
+            return REPORT_BAD_INPUT;
+        }
+    }
+    return REPORT_FINISHED;
+}
+
+static int inspect(const char *path, bool fresh, struct look *look)
+{
+    int status = look_at(path, look);
+    if (status == REPORT_FINISHED)
+        status = judge(path, look, fresh);
+    free(look->foreign);
+    return status;
+}
+
+int run_folder_open(struct run_folder *folder, const char *path, const char *job_text,
+                    bool fresh, bool *resumes)
+{
+    *folder = (struct run_folder){.path = array_string(path), .lock = -1};
+    *resumes = false;
+    struct look look;
+    int status = inspect(path, fresh, &look);
+    if (status == REPORT_FINISHED && !look.exists)
+        status = make_folders(path);
+    if (status == REPORT_FINISHED)
+        status = take_lock(folder);
+    if (status == REPORT_FINISHED) /* once more: another run may have come and gone */
+        status = inspect(path, fresh, &look);
+    if (status == REPORT_FINISHED)
+        status = settle(folder, &look, job_text, fresh, resumes);
+    if (status != REPORT_FINISHED)
+        run_folder_close(folder);
+    return status;
+}
+
+void run_folder_close(struct run_folder *folder)
+{
+    if (folder->lock >= 0) {
+        (void)!ftruncate(folder->lock, 0); /* nobody holds it: nobody's name */
+        close(folder->lock);
+    }
+    free(folder->path);
+    *folder = (struct run_folder){.lock = -1};
+}
+
+/* ---------------------------------------------------------------------------------------- its files */
+
+static char *step_path(const struct run_folder *folder, const char *name, int64_t step)
+{
+    char *parent = path_in(folder->path, name), *path = file_step_path(parent, step);
+    free(parent);
+    return path;
+}
+
+char *run_folder_checkpoint_path(const struct run_folder *folder, int64_t step)
+{
+    return step_path(folder, "checkpoints", step);
+}
+
+char *run_folder_series_path(const struct run_folder *folder, int64_t step)
+{
+    return step_path(folder, "series", step);
+}
+
+int run_folder_checkpoints(const struct run_folder *folder, int64_t **steps)
+{
+    char *path = path_in(folder->path, "checkpoints");
+    const int n = file_steps(path, steps);
+    free(path);
+    for (int i = 0; i < n / 2; i++) {
+        const int64_t step = (*steps)[i];
+        (*steps)[i] = (*steps)[n - 1 - i];
+        (*steps)[n - 1 - i] = step;
+    }
+    return n;
+}
+
+void run_folder_prune(const struct run_folder *folder, int keep)
+{
+    CHECK(keep > 0, "%d checkpoints to keep", keep);
+    int64_t *steps;
+    const int n = run_folder_checkpoints(folder, &steps);
+    for (int i = keep; i < n; i++) {
+        char *path = run_folder_checkpoint_path(folder, steps[i]);
+        if (unlink(path) != 0)
+            report_warn("cannot remove the old checkpoint %s: %s", path, strerror(errno));
+        free(path);
+    }
+    free(steps);
+}
+
+void run_folder_status(const struct run_folder *folder, const char *text)
+{
+    char *path = path_in(folder->path, "status"),
+         *temporary = path_in(folder->path, ".status.part");
+    FILE *stream = fopen(temporary, "we");
+    if (stream != NULL) {
+        const bool written = fputs(text, stream) >= 0;
+        /* Not forced to the disk: it is for the living, and comes often. */
+        if (fclose(stream) == 0 && written)
+            (void)rename(temporary, path);
+    }
+    free(path);
+    free(temporary);
+}
+
+int run_folder_write_file(const char *path, const char *text)
+{
+    char *why = file_write(path, text, strlen(text));
+    if (why == NULL)
+        return REPORT_FINISHED;
+    report_error(
+        "cannot write %s: %s; free some space or mend the disk, then run the same command again",
+        path, why);
+    free(why);
+    return REPORT_STORAGE;
+}
