@@ -58,24 +58,29 @@ all_objects := $(library_objects) $(kernel_objects) $(main:%.c=$(BUILD)/%.o) $(t
 
 # --------------------------------------------------------------------------------------------- goals
 
-.PHONY: all hopper test lint help install clean setup unit_tests
+.PHONY: all hopper test lint help install clean unit_tests
 .DEFAULT_GOAL := all
 
 ##  make              build all programs into bin/
 all: $(programs) $(library)
 
 ##  make hopper       set up what is missing, build, run jobs/hopper.yaml on all cores, show results
-hopper: setup
+hopper:
+	@config/setup run
 	@$(MAKE) --no-print-directory all
 	@config/hopper $(BIN)
 
 ##  make test         set up what is missing, build, run all tests (FILTER=word: only some of them)
-test: setup
+test:
+	@config/setup test
 	@$(MAKE) --no-print-directory all unit_tests
-	@BUILD=$(BUILD) BIN=$(BIN) FLAVOUR=$(FLAVOUR) CC=$(CC) tests/run $(FILTER)
+	@BUILD='$(BUILD)' BIN='$(BIN)' FLAVOUR='$(FLAVOUR)' CC='$(CC)' CPPFLAGS='$(CPPFLAGS)' \
+	    tests/run $(FILTER)
 
 ##  make lint         check the code's form and look for mistakes with clang-tidy and cppcheck
-lint: all
+lint:
+	@config/setup lint
+	@$(MAKE) --no-print-directory all
 	@CC='$(CC)' CPPFLAGS='$(CPPFLAGS)' config/lint/run $(FILES)
 
 ##  make install      install programs, material library and jobs below PREFIX (PREFIX=/usr/local)
@@ -97,9 +102,6 @@ help:
 	@echo 'FLAVOUR=release|debug|sanitize chooses how to compile, CC=gcc|clang with what;'
 	@echo 'WERROR=1 makes warnings errors; BUILD= and BIN= name other folders to build into; V=1 shows the'
 	@echo 'commands.'
-
-setup:
-	@config/setup
 
 unit_tests: $(unit_tests)
 

@@ -57,9 +57,16 @@ double exact_sum_value(const struct exact_sum *sum)
         return (double)NAN;
     struct exact_sum normal = *sum;
     exact_sum_normalise(&normal);
-    /* Limbs 1 and 2 are not negative here, so nothing cancels but the one subtraction at the top. */
-    return (double)normal.limb[0] * UNIT[0] +
-           ((double)normal.limb[1] * UNIT[1] + (double)normal.limb[2] * UNIT[2]);
+    /* A small negative total has limbs -1, 2^40 - 1, ..: nearly all would cancel, and with it the
+     * value.  Its opposite has small limbs, all of one sign. */
+    const double sign = normal.limb[0] < 0 ? -1.0 : 1.0;
+    if (normal.limb[0] < 0) {
+        for (int k = 0; k < 3; k++)
+            normal.limb[k] = -normal.limb[k];
+        exact_sum_normalise(&normal);
+    }
+    const double low = (double)normal.limb[1] * UNIT[1] + (double)normal.limb[2] * UNIT[2];
+    return sign * ((double)normal.limb[0] * UNIT[0] + low);
 }
 
 void exact_sum_reduce(const struct comm *comm, struct exact_sum *sums, int n)

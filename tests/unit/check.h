@@ -36,43 +36,43 @@ static struct {
 static int check_n_tests;
 static char check_failure[CHECK_TEXT_SIZE]; /* of the test that runs; "" while it holds */
 
-#define TEST(test_name)                                                                           \
-    static void test_name(void);                                                                  \
-    __attribute__((constructor)) static void register_##test_name(void)                           \
-    {                                                                                             \
-        if (check_n_tests < CHECK_TESTS_MAX) {                                                    \
-            check_tests[check_n_tests].name = #test_name;                                         \
-            check_tests[check_n_tests++].run = test_name;                                         \
-        }                                                                                         \
-    }                                                                                             \
+#define TEST(test_name)                                                                        \
+    static void test_name(void);                                                               \
+    __attribute__((constructor)) static void register_##test_name(void)                        \
+    {                                                                                          \
+        if (check_n_tests < CHECK_TESTS_MAX) {                                                 \
+            check_tests[check_n_tests].name = #test_name;                                      \
+            check_tests[check_n_tests++].run = test_name;                                      \
+        }                                                                                      \
+    }                                                                                          \
     static void test_name(void)
 
-#define CHECK_FAIL(...)                                                                           \
-    do {                                                                                          \
-        if (check_failure[0] == '\0')                                                             \
-            (void)snprintf(check_failure, sizeof check_failure, __VA_ARGS__);                     \
+#define CHECK_FAIL(...)                                                                        \
+    do {                                                                                       \
+        if (check_failure[0] == '\0')                                                          \
+            (void)snprintf(check_failure, sizeof check_failure, __VA_ARGS__);                  \
     } while (0)
 
-#define EXPECT(condition)                                                                         \
-    do {                                                                                          \
-        if (!(condition))                                                                         \
-            CHECK_FAIL("%s:%d: %s", __FILE__, __LINE__, #condition);                              \
+#define EXPECT(condition)                                                                      \
+    do {                                                                                       \
+        if (!(condition))                                                                      \
+            CHECK_FAIL("%s:%d: %s", __FILE__, __LINE__, #condition);                           \
     } while (0)
 
 /* |a - b| <= tolerance; NaN fails. */
-#define EXPECT_NEAR(a, b, tolerance)                                                              \
-    do {                                                                                          \
-        const double a_ = (a), b_ = (b), difference_ = a_ > b_ ? a_ - b_ : b_ - a_;               \
-        if (!(difference_ <= (tolerance)))                                                        \
-            CHECK_FAIL("%s:%d: %s is %.17g, %s is %.17g", __FILE__, __LINE__, #a, a_, #b, b_);    \
+#define EXPECT_NEAR(a, b, tolerance)                                                           \
+    do {                                                                                       \
+        const double a_ = (a), b_ = (b), difference_ = a_ > b_ ? a_ - b_ : b_ - a_;            \
+        if (!(difference_ <= (tolerance)))                                                     \
+            CHECK_FAIL("%s:%d: %s is %.17g, %s is %.17g", __FILE__, __LINE__, #a, a_, #b, b_); \
     } while (0)
 
-#define EXPECT_STRING(a, b)                                                                       \
-    do {                                                                                          \
-        const char *a_ = (a), *b_ = (b);                                                          \
-        if (a_ == NULL || b_ == NULL || strcmp(a_, b_) != 0)                                      \
-            CHECK_FAIL("%s:%d: %s is \"%s\", expected \"%s\"", __FILE__, __LINE__, #a,            \
-                       a_ != NULL ? a_ : "(null)", b_ != NULL ? b_ : "(null)");                   \
+#define EXPECT_STRING(a, b)                                                                    \
+    do {                                                                                       \
+        const char *a_ = (a), *b_ = (b);                                                       \
+        if (a_ == NULL || b_ == NULL || strcmp(a_, b_) != 0)                                   \
+            CHECK_FAIL("%s:%d: %s is \"%s\", expected \"%s\"", __FILE__, __LINE__, #a,         \
+                       a_ != NULL ? a_ : "(null)", b_ != NULL ? b_ : "(null)");                \
     } while (0)
 
 static inline bool check_wanted(const char *name, int argc, char **argv)
