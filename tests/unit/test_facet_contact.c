@@ -1,0 +1,670 @@
+/*
+ * Spheres against facets: one contact where there is one, nothing felt at seams, the same bits
+ * whatever is listed, loads on bodies, energies.
+ */
+#include "check.h"
+#include "contact/facet_contact.h"
+#include "job/job.h"
+#include "model/body.h"
+#include "model/material.h"
+#include "model/sphere.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+
+enum { BODIES_MAX = 2 };
+
+static char NAME[] = "body";
+
+/* Spheres that do not meet each other, and bodies. */
+struct scene {
+    struct materials materials;
+    struct bodies bodies;
+    struct spheres spheres;
+    struct facet_contacts facets;
+    double body_allowance[BODIES_MAX];
+    struct vec3 gravity;
+    double dt;
+    int64_t step;
+};
+
+static uint64_t random_state = 1;
+
+/* Uniform in [low, high). */
+static double random_between(double low, double high)
+{
+    random_state = random_state * 6364136223846793005u + 1442695040888963407u;
+    return low + (high - low) * (double)(random_state >> 11) * 0x1p-53;
+}
+
+static void scene_build(struct scene *scene, struct job_material material, double friction,
+                        double restitution, int n_bodies, struct job_body *asked, int n_spheres,
+                        double radius)
+{
+    struct job_pair pair = {0, 0, friction, restitution};
+    const struct job job = {.n_materials = 1,
+                            .materials = &material,
+                            .n_pairs = 1,
+                            .pairs = &pair,
+                            .n_bodies = n_bodies,
+                            .bodies = asked};
+    *scene = (struct scene){.dt = 1e-5};
+    materials_build(&scene->materials, &job);
+    bodies_build(&scene->bodies, &job);
+    facet_contacts_init(&scene->facets, n_bodies);
+    spheres_init(&scene->spheres);
+    spheres_reserve(&scene->spheres, n_spheres);
+    scene->spheres.n_owned = scene->spheres.n_all = n_spheres;
+    for (int i = 0; i < n_spheres; i++) {
+        scene->spheres.id[i] = 100 + 3 * i;
+        scene->spheres.motion[i].lane[3] = radius;
+        sphere_complete(&scene->spheres, i, &scene->materials);
+    }
+}
+
+static void scene_clear(struct scene *scene)
+{
+    facet_contacts_clear(&scene->facets);
+    spheres_clear(&scene->spheres);
+    bodies_clear(&scene->bodies);
+    materials_clear(&scene->materials);
+}
+
+static void put_sphere(struct scene *scene, int i, struct vec3 x, struct vec3 v, struct vec3 w)
+{
+    double *motion = scene->spheres.motion[i].lane, *spin = scene->spheres.spin[i].lane;
+    const double values[6] = {x.x, x.y, x.z, v.x, v.y, v.z};
+    for (int k = 0; k < 3; k++) {
+        motion[k] = values[k];
+        motion[4 + k] = values[3 + k];
+    }
+    spin[4] = w.x;
+    spin[5] = w.y;
+    spin[6] = w.z;
+    sphere_complete(&scene->spheres, i, &scene->materials);
+}
+
+static void search(struct scene *scene, bool all_pairs)
+{
+    facet_contacts_search(&scene->facets, &scene->spheres, &scene->bodies,
+                          scene->body_allowance, all_pairs);
+}
+
+static void apply(struct scene *scene)
+{
+    memset(scene->spheres.force, 0,
+           (size_t)scene->spheres.n_owned * sizeof *scene->spheres.force);
+    facet_contacts_apply(&scene->facets, &scene->spheres, &scene->bodies, &scene->materials,
+                         scene->dt, true);
+}
+
+/* Leapfrog: positions at the step, velocities half a step before. */
+static void integrate(struct scene *scene)
+{
+    const double g[3] = {scene->gravity.x, scene->gravity.y, scene->gravity.z};
+    for (int i = 0; i < scene->spheres.n_owned; i++) {
+        double *motion = scene->spheres.motion[i].lane, *spin = scene->spheres.spin[i].lane;
+        const double *force = scene->spheres.force[i].lane;
+        for (int k = 0; k < 3; k++) {
+            motion[4 + k] += scene->dt * (force[k] * spin[7] + g[k]);
+            motion[k] += scene->dt * motion[4 + k];
+            spin[4 + k] += scene->dt * 2.5 * force[4 + k] * spin[7] * spin[3] * spin[3];
+        }
+        sphere_complete(&scene->spheres, i, &scene->materials);
+    }
+    scene->step++;
+    bodies_place(&scene->bodies, scene->step, scene->dt);
+}
+
+static int count_contacts(const struct scene *scene)
+{
+    int n = 0;
+    for (int k = 0; k < scene->facets.n; k++)
+        n += scene->facets.list[k].history[CONTACT_RADIUS_LANE] > 0.0;
+    return n;
+}
+
+/* Contacts of a sphere of radius 1 put at rest at a place. */
+static int contacts_at(struct scene *scene, double x, double y, double z)
+{
+    const struct vec3 zero = {0, 0, 0};
+    put_sphere(scene, 0, (struct vec3){x, y, z}, zero, zero);
+    facet_contacts_forget(&scene->facets);
+    search(scene, false);
+    apply(scene);
+    return count_contacts(scene);
+}
+
+static const struct job_material STEEL = {.density = 7850, .young = 2.1e11, .poisson = 0.3};
+static const struct job_material RUBBER = {.density = 1000, .young = 1e6, .poisson = 0.3};
+
+static struct job_body mesh_body(int n_vertices, struct vec3 *vertices, int n_facets,
+                                 int (*facets)[4])
+{
+    return (struct job_body){.name = NAME,
+                             .geometry = JOB_GEOMETRY_MESH,
+                             .n_vertices = n_vertices,
+                             .vertices = vertices,
+                             .n_facets = n_facets,
+                             .facets = facets,
+                             .stop = (double)INFINITY};
+}
+
+enum sheet { QUADS, TRIANGLES, MIXED, ONE_QUAD };
+
+enum { SHEET_CELLS = 8, SHEET_POINTS = (SHEET_CELLS + 1) * (SHEET_CELLS + 1) };
+
+struct sheet_store {
+    struct vec3 vertices[SHEET_POINTS];
+    int facets[2 * SHEET_CELLS * SHEET_CELLS][4];
+};
+
+/* A sheet over [0, size]^2, sloping by the angle whose cosine and sine are .96 and .28, or flat;
+ * `bump` shakes heights. */
+static struct job_body sheet_body(struct sheet_store *store, enum sheet kind, double size,
+                                  bool slopes, double bump)
+{
+    const int n = kind == ONE_QUAD ? 1 : SHEET_CELLS;
+    int n_facets = 0;
+    for (int j = 0; j <= n; j++)
+        for (int i = 0; i <= n; i++) {
+            const double x = size * (double)i / (double)n, y = size * (double)j / (double)n;
+            store->vertices[j * (n + 1) + i] =
+                (struct vec3){slopes ? 0.96 * x : x, y,
+                              (slopes ? 0.28 * x : 0.0) + bump * random_between(-1.0, 1.0)};
+        }
+    for (int j = 0; j < n; j++)
+        for (int i = 0; i < n; i++) {
+            const int a = j * (n + 1) + i, b = a + 1, c = b + n + 1, d = a + n + 1;
+            const bool whole =
+                kind == QUADS || kind == ONE_QUAD || (kind == MIXED && (i + j) % 2);
+            const int quad[4] = {a, b, c, d}, low[4] = {a, b, c, -1}, high[4] = {a, c, d, -1};
+            if (whole) {
+                memcpy(store->facets[n_facets++], quad, sizeof quad);
+            } else {
+                memcpy(store->facets[n_facets++], low, sizeof low);
+                memcpy(store->facets[n_facets++], high, sizeof high);
+            }
+        }
+    return mesh_body((n + 1) * (n + 1), store->vertices, n_facets, store->facets);
+}
+
+/* ---- How many contacts ------------------------------------------------------------------------ */
+
+TEST(a_corner_of_three_walls_has_three_contacts)
+{
+    struct job_body box = {.name = NAME,
+                           .geometry = JOB_GEOMETRY_BOX,
+                           .max = {5, 5, 5},
+                           .open = JOB_SIDE_TOP,
+                           .stop = (double)INFINITY};
+    struct scene scene;
+    scene_build(&scene, STEEL, 0.5, 1.0, 1, &box, 1, 1.0);
+    EXPECT(contacts_at(&scene, 0.999, 0.999, 0.999) == 3);
+    EXPECT(contacts_at(&scene, 0.999, 2.0, 0.999) == 2);
+    EXPECT(contacts_at(&scene, 2.0, 2.0, 0.999) == 1);
+    EXPECT(contacts_at(&scene, 2.0, 2.0, 2.0) == 0);
+    /* On the rim, seen from above: an edge, and a vertex. */
+    EXPECT(contacts_at(&scene, 0.1, 2.0, 5.99) == 1);
+    EXPECT(contacts_at(&scene, 0.1, 0.1, 5.98) == 2 ||
+           contacts_at(&scene, 0.1, 0.1, 5.98) == 1);
+    EXPECT(contacts_at(&scene, -0.1, -0.1, 5.98) == 1);
+    scene_clear(&scene);
+}
+
+TEST(a_convex_edge_has_one_contact_and_turns_its_normal_smoothly)
+{
+    struct job_body box = {
+        .name = NAME, .geometry = JOB_GEOMETRY_BOX, .max = {5, 5, 5}, .stop = (double)INFINITY};
+    struct scene scene;
+    scene_build(&scene, STEEL, 0.5, 1.0, 1, &box, 1, 1.0);
+    /* Along the top to the edge, around it, down the side, always as deep. */
+    EXPECT(contacts_at(&scene, 4.0, 2.0, 5.999) == 1);
+    const double expected = scene.spheres.force[0].lane[2];
+    for (int k = 0; k <= 300; k++) {
+        const double turn = k < 100 ? 0.0 : k > 200 ? 1.0 : (double)(k - 100) / 100.0;
+        const double angle = 1.5707963267948966 * turn;
+        const double to_edge = k < 100 ? 0.01 * (double)(100 - k) : 0.0;
+        const double past_edge = k > 200 ? 0.01 * (double)(k - 200) : 0.0;
+        EXPECT(contacts_at(&scene, 5.0 - to_edge + 0.999 * sin(angle), 2.0,
+                           5.0 - past_edge + 0.999 * cos(angle)) == 1);
+        const double *force = scene.spheres.force[0].lane;
+        EXPECT_NEAR(force[0] / expected, sin(angle), 1e-9);
+        EXPECT_NEAR(force[2] / expected, cos(angle), 1e-9);
+    }
+    scene_clear(&scene);
+}
+
+/* Two squares that meet along y at an angle, rising to both sides of x = 0. */
+static struct job_body fold_body(struct vec3 vertices[6], int facets[2][4], double angle)
+{
+    const double c = cos(0.5 * angle), s = sin(0.5 * angle);
+    for (int k = 0; k < 2; k++) {
+        const double y = k == 0 ? -5.0 : 5.0;
+        vertices[3 * k] = (struct vec3){-5.0 * c, y, 5.0 * s};
+        vertices[3 * k + 1] = (struct vec3){0.0, y, 0.0};
+        vertices[3 * k + 2] = (struct vec3){5.0 * c, y, 5.0 * s};
+    }
+    const int both[2][4] = {{0, 1, 4, 3}, {1, 2, 5, 4}};
+    memcpy(facets, both, sizeof both);
+    return mesh_body(6, vertices, 2, facets);
+}
+
+TEST(a_shallow_fold_is_one_contact_a_steep_one_two)
+{
+    const double degree = 0.017453292519943295;
+    for (int k = 0; k < 2; k++) {
+        struct vec3 vertices[6];
+        int facets[2][4];
+        struct job_body fold = fold_body(vertices, facets, (k == 0 ? 14.0 : 16.0) * degree);
+        struct scene scene;
+        scene_build(&scene, STEEL, 0.5, 1.0, 1, &fold, 1, 1.0);
+        EXPECT(contacts_at(&scene, 0.0, 0.0, 1.0) == k + 1);
+        scene_clear(&scene);
+    }
+}
+
+TEST(a_thin_wedge_is_felt_on_its_near_side_only)
+{
+    /* A knife of 30 degrees, its edge along y, pointing to -x; the sphere lies on its upper side. */
+    struct vec3 vertices[6] = {{0, -5, 0}, {5, -5, 1.34}, {5, -5, -1.34},
+                               {0, 5, 0},  {5, 5, 1.34},  {5, 5, -1.34}};
+    int facets[2][4] = {{0, 3, 4, 1}, {0, 2, 5, 3}};
+    struct job_body wedge = mesh_body(6, vertices, 2, facets);
+    struct scene scene;
+    scene_build(&scene, STEEL, 0.5, 1.0, 1, &wedge, 1, 1.0);
+    const double length = sqrt(25.0 + 1.34 * 1.34);
+    const double x = 0.3, height = 0.999; /* above the upper side, 0.3 from the edge */
+    EXPECT(contacts_at(&scene, (5.0 * x - 1.34 * height) / length, 0.0,
+                       (1.34 * x + 5.0 * height) / length) == 1);
+    EXPECT(scene.spheres.force[0].lane[2] > 0.0);
+    scene_clear(&scene);
+}
+
+/* ---- Seams ------------------------------------------------------------------------------------ */
+
+/* Takes a sphere of radius 1 across a sheet and across one large quad in the same plane, spinning so
+ * that it nearly rolls; returns how much the two force rows ever differ, relative to the force. */
+static double worst_difference(enum sheet kind, bool slopes, struct vec3 from,
+                               struct vec3 towards, double overlap, struct vec3 drift)
+{
+    enum { STEPS = 400 };
+    static struct sheet_store stores[2];
+    struct job_body bodies[2] = {sheet_body(&stores[0], kind, 8.0, slopes, 0.0),
+                                 sheet_body(&stores[1], ONE_QUAD, 8.0, slopes, 0.0)};
+    struct scene scenes[2];
+    const struct vec3 normal =
+        slopes ? (struct vec3){-0.28, 0.0, 0.96} : (struct vec3){0, 0, 1};
+    double worst = 0.0;
+    for (int s = 0; s < 2; s++) {
+        bodies[s].velocity = drift;
+        scene_build(&scenes[s], RUBBER, 20.0, 0.5, 1, &bodies[s], 1, 1.0);
+    }
+    for (int k = 0; k < STEPS; k++) {
+        for (int s = 0; s < 2; s++) {
+            const double time = (double)k * scenes[s].dt;
+            const struct vec3 way = vec3_scale(1.0 / ((double)STEPS * scenes[s].dt), towards);
+            struct vec3 x = vec3_axpy(from, time, way);
+            if (slopes)
+                x = (struct vec3){0.96 * x.x, x.y, 0.28 * x.x};
+            x = vec3_axpy(vec3_axpy(x, 1.0 - overlap, normal), time, drift);
+            const struct vec3 v =
+                slopes ? (struct vec3){0.96 * way.x, way.y, 0.28 * way.x} : way;
+            const struct vec3 w = vec3_scale(0.99, vec3_cross(normal, v));
+            bodies_place(&scenes[s].bodies, k, scenes[s].dt);
+            put_sphere(&scenes[s], 0, x, vec3_add(v, drift), w);
+            search(&scenes[s], false);
+            apply(&scenes[s]);
+            if (count_contacts(&scenes[s]) != 1)
+                return (double)INFINITY;
+        }
+        const double *a = scenes[0].spheres.force[0].lane, *b = scenes[1].spheres.force[0].lane;
+        for (int lane = 0; lane < 8; lane++) {
+            const double size = sqrt(b[0] * b[0] + b[1] * b[1] + b[2] * b[2]);
+            const double difference = fabs(a[lane] - b[lane]) / size;
+            worst = difference > worst ? difference : worst;
+        }
+    }
+    scene_clear(&scenes[0]);
+    scene_clear(&scenes[1]);
+    return worst;
+}
+
+TEST(a_sphere_that_rolls_over_coplanar_facets_feels_no_seam)
+{
+    const struct vec3 rest = {0, 0, 0}, drift = {0.3, -0.2, 0.1};
+    for (int kind = QUADS; kind <= MIXED; kind++)
+        for (int slopes = 0; slopes < 2; slopes++) {
+            const enum sheet sheet = (enum sheet)kind;
+            const bool tilted = slopes == 1;
+            /* Anyhow; along a seam; along a diagonal, from vertex to vertex; standing on a vertex. */
+            const struct vec3 ways[4][2] = {{{1.3, 1.7, 0}, {5.1, 3.3, 0}},
+                                            {{1.0, 3.0, 0}, {6.0, 0.0, 0}},
+                                            {{1.0, 1.0, 0}, {6.0, 6.0, 0}},
+                                            {{3.0, 3.0, 0}, {1e-9, 1e-9, 0}}};
+            for (int k = 0; k < 4; k++) {
+                EXPECT(worst_difference(sheet, tilted, ways[k][0], ways[k][1], 1e-5, rest) <
+                       1e-6);
+                EXPECT(worst_difference(sheet, tilted, ways[k][0], ways[k][1], 1e-2, rest) <
+                       1e-6);
+                EXPECT(worst_difference(sheet, tilted, ways[k][0], ways[k][1], 1e-2, drift) <
+                       1e-6);
+            }
+        }
+}
+
+TEST(facets_that_do_not_share_vertices_feel_like_one_plane)
+{
+    /* One square beside two, without a vertex in the middle of its side; soft, so that the seam lies
+     * deep within the contact patch. */
+    struct vec3 vertices[11] = {{0, 0, 0}, {4, 0, 0}, {4, 8, 0}, {0, 8, 0},
+                                {4, 0, 0}, {8, 0, 0}, {8, 3, 0}, {4, 3, 0},
+                                {8, 8, 0}, {4, 8, 0}, {4, 3, 0}};
+    int facets[3][4] = {{0, 1, 2, 3}, {4, 5, 6, 7}, {10, 6, 8, 9}};
+    struct job_body body = mesh_body(11, vertices, 3, facets);
+    struct scene scene;
+    scene_build(&scene, RUBBER, 0.5, 1.0, 1, &body, 1, 1.0);
+    EXPECT(contacts_at(&scene, 2.0, 2.0, 0.8) == 1);
+    const double expected = scene.spheres.force[0].lane[2];
+    for (int k = 0; k <= 300; k++) {
+        const double part = (double)k / 300.0;
+        EXPECT(contacts_at(&scene, 3.0 + 2.0 * part, 2.5 + part, 0.8) == 1);
+        EXPECT_NEAR(scene.spheres.force[0].lane[2] / expected, 1.0, 1e-6);
+        EXPECT_NEAR(scene.spheres.force[0].lane[0] / expected, 0.0, 1e-6);
+    }
+    scene_clear(&scene);
+}
+
+TEST(a_shallow_fold_passes_the_spring_on)
+{
+    struct vec3 vertices[6];
+    int facets[2][4];
+    struct job_body fold = fold_body(vertices, facets, 0.17);
+    struct scene scene;
+    scene_build(&scene, RUBBER, 20.0, 1.0, 1, &fold, 1, 1.0);
+    /* Down the left side and up the right one at a constant height above the deeper of the two. */
+    double spring_before = 0.0, force_before = 0.0;
+    for (int k = 0; k <= 400; k++) {
+        const double x = 0.001 * (double)(k - 200), c = cos(0.085), s = sin(0.085);
+        const double z = ((x < 0.0 ? -x : x) * s + 0.99) / c;
+        put_sphere(&scene, 0, (struct vec3){x, 0, z}, (struct vec3){0, 0.5, 0},
+                   (struct vec3){0, 0, 0});
+        search(&scene, false);
+        apply(&scene);
+        EXPECT(count_contacts(&scene) == 1);
+        const double *force = scene.spheres.force[0].lane;
+        const double up = sqrt(force[0] * force[0] + force[2] * force[2]), along = -force[1];
+        if (k > 0) {
+            EXPECT_NEAR(up / force_before, 1.0, 0.02);
+            EXPECT(along > spring_before && along < spring_before + 0.02 * up);
+        }
+        force_before = up;
+        spring_before = along;
+    }
+    scene_clear(&scene);
+}
+
+/* ---- The same bits ---------------------------------------------------------------------------- */
+
+static void start_rough_scene(struct scene *scene, struct sheet_store *store, int n)
+{
+    random_state = 7;
+    struct job_body bodies[2] = {sheet_body(store, MIXED, 8.0, false, 0.25),
+                                 {.name = NAME,
+                                  .geometry = JOB_GEOMETRY_BOX,
+                                  .min = {-0.5, -0.5, -2.0},
+                                  .max = {8.5, 8.5, 3.0},
+                                  .velocity = {0.2, 0.0, 0.1},
+                                  .pivot = {4.0, 4.0, 0.5},
+                                  .axis = {0.6, 0.0, 0.8},
+                                  .rate = 0.3,
+                                  .stop = 0.9}};
+    scene_build(scene, RUBBER, 0.8, 0.6, 2, bodies, n, 0.4);
+    scene->dt = 2e-3;
+    scene->gravity = (struct vec3){0, 0, -9.81};
+    for (int i = 0; i < n; i++)
+        put_sphere(
+            scene, i,
+            (struct vec3){random_between(0.5, 7.5), random_between(0.5, 7.5),
+                          random_between(0.7, 2.0)},
+            (struct vec3){random_between(-3, 3), random_between(-3, 3), random_between(-3, 0)},
+            (struct vec3){random_between(-9, 9), random_between(-9, 9), random_between(-9, 9)});
+}
+
+static bool is_same_state(const struct scene *a, const struct scene *b)
+{
+    const size_t n = (size_t)a->spheres.n_owned;
+    struct facet_contact_record *records[2] = {NULL, NULL};
+    const int n_a = facet_contacts_records(&a->facets, &a->spheres, &records[0]);
+    const int n_b = facet_contacts_records(&b->facets, &b->spheres, &records[1]);
+    bool same = n_a == n_b && memcmp(a->spheres.motion, b->spheres.motion, n * 64) == 0 &&
+                memcmp(a->spheres.spin, b->spheres.spin, n * 64) == 0 &&
+                memcmp(a->spheres.force, b->spheres.force, n * 64) == 0 &&
+                memcmp(a->spheres.dissipated_tangential, b->spheres.dissipated_tangential,
+                       n * sizeof(double)) == 0;
+    for (int k = 0; k < n_a && same; k++)
+        same = records[0][k].id == records[1][k].id &&
+               records[0][k].body == records[1][k].body &&
+               records[0][k].feature == records[1][k].feature &&
+               memcmp(records[0][k].history, records[1][k].history,
+                      sizeof records[0][k].history) == 0;
+    for (int body = 0; body < a->bodies.n && same; body++) {
+        struct body_load p = a->facets.loads[body], q = b->facets.loads[body];
+        for (int x = 0; x < 3; x++) {
+            exact_sum_normalise(&p.force[x]);
+            exact_sum_normalise(&q.force[x]);
+            exact_sum_normalise(&p.torque[x]);
+            exact_sum_normalise(&q.torque[x]);
+        }
+        exact_sum_normalise(&p.work);
+        exact_sum_normalise(&q.work);
+        same = memcmp(&p, &q, sizeof p) == 0;
+    }
+    free(records[0]);
+    free(records[1]);
+    return same;
+}
+
+/* Out of memory and in again, as after a migration or a restart. */
+static void carry_through_records(struct scene *scene)
+{
+    struct facet_contact_record *records = NULL;
+    const int n = facet_contacts_records(&scene->facets, &scene->spheres, &records);
+    int *sphere = calloc((size_t)n + 1, sizeof *sphere);
+    for (int k = 0; k < n; k++)
+        sphere[k] = (int)(records[k].id - 100) / 3;
+    facet_contacts_forget(&scene->facets);
+    if (random_between(0.0, 1.0) < 0.5)
+        search(scene, false);
+    facet_contacts_restore(&scene->facets, n, records, sphere);
+    search(scene, false);
+    free(records);
+    free(sphere);
+}
+
+TEST(lists_made_at_any_moment_give_the_same_bits)
+{
+    enum { N = 40, STEPS = 1500 };
+    static struct sheet_store stores[2];
+    struct scene all, listed;
+    start_rough_scene(&all, &stores[0], N);
+    start_rough_scene(&listed, &stores[1], N);
+    int wait = 0, most = 0;
+    bool same = true;
+    search(&all, true);
+    for (int k = 0; k < STEPS && same; k++) {
+        if (wait-- == 0) {
+            wait = (int)random_between(0.0, 12.0);
+            /* Nothing is faster than 60 m/s here. */
+            for (int i = 0; i < N; i++)
+                listed.spheres.allowance[i] = 60.0 * listed.dt * (double)wait;
+            for (int b = 0; b < 2; b++)
+                listed.body_allowance[b] =
+                    listed.bodies.list[b].speed_max * listed.dt * (double)wait;
+            if (k % 5 == 0)
+                carry_through_records(&listed);
+            else
+                search(&listed, false);
+        }
+        apply(&all);
+        apply(&listed);
+        same = is_same_state(&all, &listed);
+        const int n = count_contacts(&all);
+        most = n > most ? n : most;
+        integrate(&all);
+        integrate(&listed);
+    }
+    EXPECT(same);
+    EXPECT(most >= N);
+    EXPECT(listed.facets.n < all.facets.n / 4);
+    for (int i = 0; i < N; i++)
+        EXPECT(fabs(sphere_velocity(&all.spheres, i)[2]) < 60.0);
+    scene_clear(&all);
+    scene_clear(&listed);
+}
+
+TEST(a_search_keeps_what_touches_even_out_of_reach)
+{
+    struct job_body plane = {.name = NAME,
+                             .geometry = JOB_GEOMETRY_PLANE,
+                             .normal = {0, 0, 1},
+                             .extent = 8.0,
+                             .stop = (double)INFINITY};
+    struct scene scene;
+    scene_build(&scene, RUBBER, 0.5, 1.0, 1, &plane, 1, 1.0);
+    EXPECT(contacts_at(&scene, 0.0, 0.0, 0.99) == 1);
+    scene.facets.list[0].history[0] = 3.0;
+    scene.spheres.motion[0].lane[2] = 5.0;
+    search(&scene, false);
+    EXPECT(scene.facets.n == 1 && count_contacts(&scene) == 1);
+    apply(&scene);
+    EXPECT(count_contacts(&scene) == 0);
+    /* The spring went with it; the ledger knows. */
+    EXPECT(scene.spheres.dissipated_tangential[0] > 0.0);
+    search(&scene, false);
+    EXPECT(scene.facets.n == 0);
+    scene_clear(&scene);
+}
+
+/* ---- Loads and energies ------------------------------------------------------------------------ */
+
+TEST(a_body_feels_the_opposite_of_what_its_spheres_feel)
+{
+    enum { N = 40 };
+    static struct sheet_store store;
+    struct scene scene;
+    start_rough_scene(&scene, &store, N);
+    struct exact_sum total[3] = {{{0}, 0, 0}};
+    for (int k = 0; k < 300; k++) {
+        search(&scene, true);
+        apply(&scene);
+        integrate(&scene);
+    }
+    memset(scene.facets.loads, 0, 2 * sizeof *scene.facets.loads);
+    apply(&scene);
+    struct vec3 torque = {0, 0, 0};
+    for (int i = 0; i < N; i++) {
+        const double *f = scene.spheres.force[i].lane, *x = sphere_position(&scene.spheres, i);
+        for (int k = 0; k < 3; k++)
+            exact_sum_add(&total[k], -f[k]);
+        /* About the origin, the sphere's own part and its lever's. */
+        torque = vec3_sub(torque, (struct vec3){f[4], f[5], f[6]});
+        torque = vec3_sub(torque, vec3_cross((struct vec3){x[0], x[1], x[2]},
+                                             (struct vec3){f[0], f[1], f[2]}));
+    }
+    struct vec3 on_bodies = {0, 0, 0};
+    for (int b = 0; b < 2; b++) {
+        const struct body_load *load = &scene.facets.loads[b];
+        on_bodies = vec3_add(on_bodies, (struct vec3){exact_sum_value(&load->torque[0]),
+                                                      exact_sum_value(&load->torque[1]),
+                                                      exact_sum_value(&load->torque[2])});
+        for (int k = 0; k < 3; k++) {
+            struct exact_sum minus = load->force[k];
+            for (int limb = 0; limb < 3; limb++)
+                minus.limb[limb] = -minus.limb[limb];
+            exact_sum_merge(&total[k], &minus);
+        }
+    }
+    for (int k = 0; k < 3; k++)
+        EXPECT_NEAR(exact_sum_value(&total[k]), 0.0, 1e-12);
+    /* The law acts at the undeformed surface, the body's torque at the facet: apart by the overlap. */
+    EXPECT_NEAR(vec3_norm(vec3_sub(torque, on_bodies)) / vec3_norm(on_bodies), 0.0, 0.05);
+    EXPECT(vec3_norm(on_bodies) > 1.0);
+    scene_clear(&scene);
+}
+
+TEST(a_moving_wall_is_a_moving_sphere_seen_from_the_wall)
+{
+    struct job_body planes[2] = {{.name = NAME,
+                                  .geometry = JOB_GEOMETRY_PLANE,
+                                  .normal = {0, 0, 1},
+                                  .extent = 8.0,
+                                  .stop = (double)INFINITY}};
+    planes[1] = planes[0];
+    planes[1].velocity = (struct vec3){-0.3, 0.1, 0.2};
+    struct scene scenes[2];
+    for (int s = 0; s < 2; s++) {
+        scene_build(&scenes[s], RUBBER, 0.5, 0.7, 1, &planes[s], 1, 1.0);
+        bodies_place(&scenes[s].bodies, 1, scenes[s].dt);
+        const struct vec3 v = s == 0 ? (struct vec3){0.3, -0.1, -0.2} : (struct vec3){0, 0, 0};
+        const struct vec3 x = {0.0, 0.0, 0.99 + scenes[s].dt * planes[s].velocity.z};
+        put_sphere(&scenes[s], 0, x, v, (struct vec3){0, 0, 0});
+        search(&scenes[s], false);
+        apply(&scenes[s]);
+    }
+    const double *a = scenes[0].spheres.force[0].lane, *b = scenes[1].spheres.force[0].lane;
+    for (int lane = 0; lane < 8; lane++)
+        EXPECT_NEAR(a[lane], b[lane], 1e-10 * a[2]);
+    const double power = -0.3 * b[0] + 0.1 * b[1] + 0.2 * b[2];
+    EXPECT_NEAR(exact_sum_value(&scenes[1].facets.loads[0].work), power * scenes[1].dt,
+                1e-15 * a[2]);
+    EXPECT(scenes[0].facets.loads[0].work.n_terms == 0);
+    scene_clear(&scenes[0]);
+    scene_clear(&scenes[1]);
+}
+
+/* An elastic sphere on a rigid plane: greatest overlap, force and duration (VERIFICATION: the rigid
+ * plane is 1e6 times as stiff). */
+TEST(an_elastic_impact_on_a_plane_is_hertz)
+{
+    struct job_body plane = {.name = NAME,
+                             .geometry = JOB_GEOMETRY_PLANE,
+                             .normal = {0, 0, 1},
+                             .extent = 8.0,
+                             .stop = (double)INFINITY};
+    const struct job_material aluminium = {.density = 2699, .young = 70e9, .poisson = 0.3};
+    struct scene scene;
+    scene_build(&scene, aluminium, 0.0, 1.0, 1, &plane, 1, 0.1);
+    scene.materials.pairs[0].normal = 4.0 / 3.0 * 70e9 / (1.0 - 0.3 * 0.3);
+    scene.dt = 731.66e-6 / 2000.0;
+    put_sphere(&scene, 0, (struct vec3){0, 0, 0.1}, (struct vec3){0, 0, -0.2},
+               (struct vec3){0, 0, 0});
+    double overlap_most = 0.0, force_most = 0.0, energy_most = 0.0;
+    int steps = 0;
+    const double mass = 1.0 / sphere_inverse_mass(&scene.spheres, 0);
+    for (int k = 0; k < 3000; k++) {
+        search(&scene, false);
+        apply(&scene);
+        struct exact_sum energy = {{0}, 0, 0};
+        facet_contacts_elastic_energy(&scene.facets, &scene.spheres, &scene.bodies,
+                                      &scene.materials, &energy);
+        const double force = scene.spheres.force[0].lane[2], stored = exact_sum_value(&energy);
+        const double overlap = 0.1 * scene.facets.overlap_max;
+        overlap_most = overlap > overlap_most ? overlap : overlap_most;
+        force_most = force > force_most ? force : force_most;
+        energy_most = stored > energy_most ? stored : energy_most;
+        steps += force > 0.0;
+        integrate(&scene);
+    }
+    EXPECT_NEAR(overlap_most, 49.717e-6, 1e-3 * 49.717e-6);
+    EXPECT_NEAR(force_most, 11370.0, 1e-3 * 11370.0);
+    EXPECT_NEAR((double)steps * scene.dt, 731.66e-6, 2e-3 * 731.66e-6);
+    EXPECT_NEAR(energy_most, 0.5 * mass * 0.04, 1e-3 * 0.5 * mass * 0.04);
+    EXPECT_NEAR(sphere_velocity(&scene.spheres, 0)[2], 0.2, 1e-4);
+    scene_clear(&scene);
+}
+
+int main(int argc, char **argv)
+{
+    return check_run(argc, argv);
+}
