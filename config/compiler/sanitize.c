@@ -1,8 +1,9 @@
 /*
  * Linked into every program of the sanitize flavour, so that leaks reported are leaks of ours.
  *
- * Open MPI unloads its plug-ins before the leak check, which then cannot name who allocated; with a
- * dlclose that does nothing they stay.  What Open MPI itself never frees is suppressed by name.
+ * Open MPI unloads its plug-ins before the leak check, which then cannot name who allocated;
+ * with a dlclose that does nothing they stay.  What Open MPI itself never frees is suppressed
+ * by name.
  */
 int dlclose(void *handle);
 const char *__asan_default_options(void);

@@ -14,7 +14,8 @@ enum { CACHE_LINE = 64, HUGE_PAGE = 2 * 1024 * 1024 };
 
 static size_t checked_bytes(size_t n, size_t size)
 {
-    CHECK(size == 0 || n <= SIZE_MAX / 4 / size, "%zu elements of %zu bytes asked for", n, size);
+    CHECK(size == 0 || n <= SIZE_MAX / 4 / size, "%zu elements of %zu bytes asked for", n,
+          size);
     return n * size;
 }
 
@@ -33,7 +34,7 @@ void *array_allocate_rows(size_t n, size_t size)
     void *memory = aligned_alloc(alignment, padded);
     CHECK(memory != NULL, "out of memory: %zu bytes asked for", padded);
     if (bytes >= HUGE_PAGE)
-        (void)madvise(memory, padded, MADV_HUGEPAGE); /* advice: its failure changes only speed */
+        (void)madvise(memory, padded, MADV_HUGEPAGE); /* advice: it may fail */
     memset(memory, 0, padded);
     return memory;
 }

@@ -26,13 +26,14 @@ char *array_format(const char *format, ...) __attribute__((format(printf, 1, 2))
 size_t array_capacity(size_t capacity, size_t needed);
 
 /* Makes room for `needed` elements in `pointer`, whose capacity is the integer `capacity`. */
-#define ARRAY_GROW(pointer, needed, capacity)                                                       \
-    do {                                                                                            \
-        if ((size_t)(needed) > (size_t)(capacity)) {                                                \
-            const size_t grown_ = array_capacity((size_t)(capacity), (size_t)(needed));             \
-            (pointer) = array_resize((pointer), (size_t)(capacity), grown_, sizeof *(pointer));     \
-            (capacity) = (__typeof__(capacity))grown_;                                              \
-        }                                                                                           \
+#define ARRAY_GROW(pointer, needed, capacity)                                                  \
+    do {                                                                                       \
+        if ((size_t)(needed) > (size_t)(capacity)) {                                           \
+            const size_t grown_ = array_capacity((size_t)(capacity), (size_t)(needed));        \
+            (pointer) =                                                                        \
+                array_resize((pointer), (size_t)(capacity), grown_, sizeof *(pointer));        \
+            (capacity) = (__typeof__(capacity))grown_;                                         \
+        }                                                                                      \
     } while (0)
 
 #endif

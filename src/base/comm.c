@@ -87,7 +87,7 @@ void comm_barrier(const struct comm *comm)
     COMM_CHECK(MPI_Barrier(comm->mpi));
 }
 
-/* ------------------------------------------------------------------------------------------ mail */
+/* ------------------------------------------------------------------------------------- mail */
 
 void comm_mail_init(struct comm_mail *mail, const struct comm *comm)
 {
@@ -138,13 +138,15 @@ void comm_mail_exchange(struct comm_mail *mail, const struct comm *comm)
         CHECK(in->n <= INT_MAX && mail->out[q].n <= INT_MAX, "a message of over 2 GiB");
         ARRAY_GROW(in->bytes, in->n, in->capacity);
         if (q != comm->rank && in->n > 0)
-            COMM_CHECK(MPI_Irecv(in->bytes, (int)in->n, MPI_BYTE, q, 1, comm->mpi, &requests[n_requests++]));
+            COMM_CHECK(MPI_Irecv(in->bytes, (int)in->n, MPI_BYTE, q, 1, comm->mpi,
+                                 &requests[n_requests++]));
     }
     for (int k = 1; k < n_ranks; k++) {
         const int q = (comm->rank + k) % n_ranks;
         struct comm_box *out = &mail->out[q];
         if (out->n > 0)
-            COMM_CHECK(MPI_Isend(out->bytes, (int)out->n, MPI_BYTE, q, 1, comm->mpi, &requests[n_requests++]));
+            COMM_CHECK(MPI_Isend(out->bytes, (int)out->n, MPI_BYTE, q, 1, comm->mpi,
+                                 &requests[n_requests++]));
     }
     if (mail->in[comm->rank].n > 0)
         memcpy(mail->in[comm->rank].bytes, mail->out[comm->rank].bytes, mail->in[comm->rank].n);
@@ -157,7 +159,8 @@ void comm_mail_exchange(struct comm_mail *mail, const struct comm *comm)
 void comm_mail_unpack(struct comm_mail *mail, int from_rank, void *bytes, size_t n)
 {
     struct comm_box *box = &mail->in[from_rank];
-    CHECK(box->read + n <= box->n, "rank %d sent %zu bytes, %zu more are asked for", from_rank, box->n, n);
+    CHECK(box->read + n <= box->n, "rank %d sent %zu bytes, %zu more are asked for", from_rank,
+          box->n, n);
     memcpy(bytes, box->bytes + box->read, n);
     box->read += n;
 }

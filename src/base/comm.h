@@ -1,7 +1,7 @@
 /*
- * Communication between ranks: typed helpers around MPI.  Raw MPI stays in this module and in the few
- * files that must have it (parallel HDF5).  There is no floating-point sum: what many ranks add up is
- * either an integer or an exact_sum (base/exact_sum.h).
+ * Communication between ranks: typed helpers around MPI.  Raw MPI stays in this module and in
+ * the few files that must have it (parallel HDF5).  There is no floating-point sum: what many
+ * ranks add up is either an integer or an exact_sum (base/exact_sum.h).
  */
 #ifndef TREMIE_BASE_COMM_H
 #define TREMIE_BASE_COMM_H
@@ -34,13 +34,15 @@ int64_t comm_sum_before(const struct comm *comm, int64_t value);
 int comm_agree(const struct comm *comm, int value);
 /* Rank 0's bytes to all.  Collective. */
 void comm_broadcast(const struct comm *comm, void *bytes, size_t n);
-/* Everybody's n bytes to everybody, in rank order: `all` holds n * n_ranks bytes.  Collective. */
+/* Everybody's n bytes to everybody, in rank order: `all` holds n * n_ranks bytes.
+ * Collective. */
 void comm_gather_all(const struct comm *comm, const void *own, void *all, size_t n);
 void comm_barrier(const struct comm *comm);
 
 /*
- * Mail: bytes packed for each rank, sent to it, unpacked there.  What was packed is what is sent; no
- * size is computed elsewhere.  Boxes are kept between uses, so a steady run does not allocate.
+ * Mail: bytes packed for each rank, sent to it, unpacked there.  What was packed is what is
+ * sent; no size is computed elsewhere.  Boxes are kept between uses, so a steady run does not
+ * allocate.
  */
 struct comm_box {
     unsigned char *bytes;

@@ -1,13 +1,14 @@
 /*
- * Sine, cosine, logarithm and exponential by range reduction and Taylor series: see elementary.h.
+ * Sine, cosine, logarithm and exponential by range reduction and Taylor series: see
+ * elementary.h.
  *
  * Angles: x - n pi/2 with pi/2 cut into pieces of 24 bits, so that n times a piece is exact for
- * |n| < 2^29; what the one inexact subtraction drops is kept as a tail.  The remainder lies within
- * +-pi/4, where the series to r^17 leaves 1e-19.
+ * |n| < 2^29; what the one inexact subtraction drops is kept as a tail.  The remainder lies
+ * within +-pi/4, where the series to r^17 leaves 1e-19.
  * Logarithm: x = 2^k m with m within sqrt(1/2)..sqrt(2), then 2 atanh((m-1)/(m+1)).
  * Exponential: x = n ln 2 + r with |r| <= ln(2)/2, then the series to r^14.
- * Taylor series need a term or two more than minimax polynomials, but their coefficients explain
- * themselves; nothing here is hot.
+ * Taylor series need a term or two more than minimax polynomials, but their coefficients
+ * explain themselves; nothing here is hot.
  */
 #include "base/elementary.h"
 

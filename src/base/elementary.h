@@ -1,9 +1,9 @@
 /*
  * Elementary functions whose bits depend on their argument alone.
  *
- * The C library chooses variants by processor and compilers fold constants with yet another one, so
- * what feeds simulated state is evaluated here: range reduction and Taylor polynomials in + - * /.
- * Errors stay below about 2 units in the last place.
+ * The C library chooses variants by processor and compilers fold constants with yet another
+ * one, so what feeds simulated state is evaluated here: range reduction and Taylor polynomials
+ * in + - * /. Errors stay below about 2 units in the last place.
  */
 #ifndef TREMIE_BASE_ELEMENTARY_H
 #define TREMIE_BASE_ELEMENTARY_H

@@ -1,5 +1,5 @@
-/* See exact_sum.h.  Rounding to a multiple of a power of two u is adding and taking away 1.5 2^52 u:
- * exact for |x| < 2^51 u with the processor's ordinary rounding. */
+/* See exact_sum.h.  Rounding to a multiple of a power of two u is adding and taking away 1.5
+ * 2^52 u: exact for |x| < 2^51 u with the processor's ordinary rounding. */
 #include "base/exact_sum.h"
 
 #include <math.h>
@@ -57,8 +57,8 @@ double exact_sum_value(const struct exact_sum *sum)
         return (double)NAN;
     struct exact_sum normal = *sum;
     exact_sum_normalise(&normal);
-    /* A small negative total has limbs -1, 2^40 - 1, ..: nearly all would cancel, and with it the
-     * value.  Its opposite has small limbs, all of one sign. */
+    /* A small negative total has limbs -1, 2^40 - 1, ..: nearly all would cancel, and with it
+     * the value.  Its opposite has small limbs, all of one sign. */
     const double sign = normal.limb[0] < 0 ? -1.0 : 1.0;
     if (normal.limb[0] < 0) {
         for (int k = 0; k < 3; k++)

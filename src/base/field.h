@@ -1,6 +1,6 @@
 /*
- * The description of state: what is not in a field table is not state, is not migrated, not saved,
- * not compared.  Adding a field is adding a row.
+ * The description of state: what is not in a field table is not state, is not migrated, not
+ * saved, not compared.  Adding a field is adding a row.
  */
 #ifndef TREMIE_BASE_FIELD_H
 #define TREMIE_BASE_FIELD_H
@@ -26,8 +26,8 @@ struct field {
     int use;   /* set of enum field_use */
 };
 
-/* Where a field lies in memory: element i begins at base + i * stride and has `width` components side
- * by side. */
+/* Where a field lies in memory: element i begins at base + i * stride and has `width`
+ * components side by side. */
 struct field_view {
     unsigned char *base;
     size_t stride; /* [bytes] */

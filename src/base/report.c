@@ -1,6 +1,6 @@
 /*
- * Messages go to standard error, except what report_say() says (standard output), and all of them to
- * the log when there is one.  See report.h for the three ways to fail.
+ * Messages go to standard error, except what report_say() says (standard output), and all of
+ * them to the log when there is one.  See report.h for the three ways to fail.
  */
 #include "base/report.h"
 
@@ -152,7 +152,7 @@ void report_bug(const char *file, int line, const char *condition, const char *f
     _exit(REPORT_BUG);
 }
 
-/* -------------------------------------------------------------------------- the user's mistakes */
+/* ---------------------------------------------------------------------- the user's mistakes */
 
 void mistakes_init(struct mistakes *mistakes)
 {
@@ -169,8 +169,8 @@ void mistakes_clear(struct mistakes *mistakes)
     mistakes_init(mistakes);
 }
 
-void mistakes_add(struct mistakes *mistakes, const char *file, int line, int column, const char *format,
-                  ...)
+void mistakes_add(struct mistakes *mistakes, const char *file, int line, int column,
+                  const char *format, ...)
 {
     va_list arguments, copy;
     va_start(arguments, format);

@@ -1,6 +1,7 @@
 /*
- * The number is split into mantissa and decimal exponent as text; prefixes add to the exponent, and one
- * strtod() then rounds once.  Only minutes, hours, turns and degrees multiply afterwards.  See units.h.
+ * The number is split into mantissa and decimal exponent as text; prefixes add to the exponent,
+ * and one strtod() then rounds once.  Only minutes, hours, turns and degrees multiply
+ * afterwards.  See units.h.
  */
 #include "base/units.h"
 
@@ -206,8 +207,8 @@ const char *units_example(const char *unit)
     return quantities[quantity_of(unit)].example;
 }
 
-/* Splits "1.5e-3 mm" into mantissa text, decimal exponent and the rest; returns NULL when there is no
- * number at the start. */
+/* Splits "1.5e-3 mm" into mantissa text, decimal exponent and the rest; returns NULL when there
+ * is no number at the start. */
 static const char *number_split(const char *text, char mantissa[NUMBER_LENGTH], long *ten)
 {
     size_t length = text[0] == '+' || text[0] == '-';

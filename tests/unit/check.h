@@ -1,6 +1,6 @@
 /*
- * A unit test program: tests register themselves, check_run() runs them in the order of the file and
- * prints one line each, `ok NAME` or `FAIL NAME: file:line: expression`.
+ * A unit test program: tests register themselves, check_run() runs them in the order of the
+ * file and prints one line each, `ok NAME` or `FAIL NAME: file:line: expression`.
  *
  *     TEST(a_name)
  *     {
@@ -15,8 +15,8 @@
  * A program that needs ranks says so in a line of its own near its top,
  *     / * ranks: 1 2 3 * /            (without the inner spaces)
  * is then run under mpirun with each number, calls MPI_Init and MPI_Finalize in main around
- * check_run(), and runs every test on all ranks; a test fails when it does on any rank.
- * The first failed EXPECT of a test is what gets reported; the test goes on, so that ranks stay in
+ * check_run(), and runs every test on all ranks; a test fails when it does on any rank.  The
+ * first failed EXPECT of a test is what gets reported; the test goes on, so that ranks stay in
  * step.  Arguments name the tests to run; none: all.
  */
 #ifndef TREMIE_TESTS_CHECK_H

@@ -43,8 +43,8 @@ TEST(broadcast_and_gather)
     free(all);
 }
 
-/* Letters of the round `round` from rank p to rank q: as many as this, so that some boxes are empty and
- * sizes differ both ways. */
+/* Letters of the round `round` from rank p to rank q: as many as this, so that some boxes are
+ * empty and sizes differ both ways. */
 static int letters(int round, int p, int q)
 {
     return round * (3 * p + q) % 7;

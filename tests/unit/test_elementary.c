@@ -1,4 +1,5 @@
-/* Our elementary functions against the C library's in long double, in units of the last place. */
+/* Our elementary functions against the C library's in long double, in units of the last
+ * place. */
 #include "base/elementary.h"
 #include "check.h"
 

@@ -1,4 +1,5 @@
-/* Spheres in memory: growth keeps what is there, derived values, dummies out of everything's way. */
+/* Spheres in memory: growth keeps what is there, derived values, dummies out of everything's
+ * way. */
 #include "model/sphere.h"
 
 #include "check.h"
