@@ -70,115 +70,147 @@ LANES_INLINE lanes contact_law_dot(const lanes a[3], const lanes b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* Hertz and the normal dashpot, cut off where they would pull: (1.4) to (1.8). */
-LANES_INLINE void contact_law_push(const struct contact_law_meeting *meeting,
-                                   const struct contact_law_constants *pair, lanes radius,
-                                   lanes v_n, lanes c_n, lanes dt, bool ledger, lanes *history,
-                                   struct contact_law_result *result)
-{
-    const lanes zero = lanes_all(0.0);
-    const lanes_mask touching = meeting->overlap > zero;
-    const lanes_mask touched = history[CONTACT_LAW_RADIUS] > zero;
-    const lanes v_old = lanes_where(touched, history[CONTACT_LAW_VELOCITY], v_n);
-    const lanes v_now = v_n + 0.5 * (v_n - v_old);                    /* [m/s]      (1.7) */
-    const lanes f_elastic = pair->normal * radius * meeting->overlap; /* Hertz [N]  (1.4) */
-    const lanes f = f_elastic - c_n * v_now;                          /* [N]        (1.6) */
+/* What the law works out on its way, per contact. */
+struct contact_law_work {
+    lanes_mask touching, touched; /* now; in the last step */
+    lanes radius;                 /* of the contact, a [m] */
+    lanes inverse_old;            /* 1 / radius of the last step; infinite where new [1/m] */
+    lanes v_n, v_t[3];            /* relative velocity across and along the contact [m/s] */
+    lanes v_now;                  /* v_n brought from the half step to the step [m/s] */
+    lanes f_elastic;              /* Hertz [N] */
+    lanes turned[3];              /* memory, turned into the plane of the contact [N] */
+    lanes taken;                  /* what turning took off [N] */
+    lanes scale;                  /* radius over the last one where it shrinks, else 1 */
+    lanes stretch;                /* tangential stiffness x dt [N s/m] */
+    lanes trial_squared;          /* of the tangential spring before Coulomb [N2] */
+    lanes_mask sliding;
+    lanes ratio; /* what Coulomb leaves of the spring */
+    lanes c_t;   /* tangential dashpot, 0 where it slides [kg/s] */
+    /* With the ledger on: products of turned and v_t. */
+    lanes turned_turned, turned_v, v_v;
+};
 
-    result->normal = lanes_keep(f > zero, f);
-    history[CONTACT_LAW_VELOCITY] = lanes_keep(touching, v_n);
-    if (ledger)
-        result->lost_damping = (f_elastic - result->normal) * v_now * dt; /* [J]      (1.17) */
+/* Hertz and the normal dashpot, cut off where they would pull. */
+LANES_INLINE void contact_law_push(struct contact_law_work *work,
+                                   const struct contact_law_meeting *meeting,
+                                   const struct contact_law_constants *pair,
+                                   const lanes *history, struct contact_law_result *result)
+{
+    const lanes v_old = lanes_where(work->touched, history[CONTACT_LAW_VELOCITY], work->v_n);
+    const lanes c_n =
+        pair->damping * lanes_sqrt(work->radius / meeting->inverse_mass); /* (1.6) */
+
+    work->v_now = work->v_n + 0.5 * (work->v_n - v_old);              /* (1.7) */
+    work->f_elastic = pair->normal * work->radius * meeting->overlap; /* (1.5) */
+    const lanes f_n = work->f_elastic - c_n * work->v_now;
+    result->normal = lanes_keep(f_n > lanes_all(0.0), f_n); /* (1.8) */
+    work->c_t = pair->damping_ratio * c_n;                  /* (1.13) */
 }
 
-/* Mindlin's spring and the dashpot beside it, limited by Coulomb.               (1.9) to (1.14)
- */
-LANES_INLINE void contact_law_grip(const struct contact_law_meeting *meeting,
-                                   const struct contact_law_constants *pair, lanes radius,
-                                   const lanes v_t[3], lanes c_t, lanes dt, bool ledger,
-                                   lanes *history, struct contact_law_result *result)
+/* Mindlin's spring, limited by Coulomb, and the dashpot beside it. */
+LANES_INLINE void contact_law_grip(struct contact_law_work *work,
+                                   const struct contact_law_meeting *meeting,
+                                   const struct contact_law_constants *pair, lanes dt,
+                                   bool ledger, lanes *history,
+                                   struct contact_law_result *result)
 {
-    const lanes zero = lanes_all(0.0), one = lanes_all(1.0);
-    const lanes *n = meeting->normal;
-    const lanes_mask touching = meeting->overlap > zero;
+    const lanes *n = meeting->normal, one = lanes_all(1.0);
     const lanes radius_old = history[CONTACT_LAW_RADIUS];
-    const lanes inverse_old = one / radius_old;  /* infinite where new, and then not chosen */
-    const lanes k_t = pair->tangential * radius; /* [N/m]     (1.9) */
-    const lanes limit = pair->friction * result->normal; /* [N]      (1.12) */
+    const lanes limit = pair->friction * result->normal; /* [N] */
+    lanes h[3];
 
-    /* The memory turns with the contact and gives way as the contact shrinks. */
-    const lanes h_n = contact_law_dot(history, n);
-    const lanes scale = lanes_where(radius < radius_old, radius * inverse_old, one);
-    const lanes turned[3] = {history[0] - h_n * n[0], history[1] - h_n * n[1],
-                             history[2] - h_n * n[2]}; /* [N]      (1.10) */
-    const lanes stretch = k_t * dt;
-    lanes kept[3], h[3];
+    work->inverse_old = one / radius_old;
+    work->scale = lanes_where(work->radius < radius_old, work->radius * work->inverse_old, one);
+    work->taken = contact_law_dot(history, n);
+    work->stretch = pair->tangential * work->radius * dt;
+#pragma GCC unroll 3
     for (int x = 0; x < 3; x++) {
-        kept[x] = scale * turned[x];
-        h[x] = lanes_keep(touching, kept[x] + stretch * v_t[x]); /* [N]      (1.11) */
+        work->turned[x] = history[x] - work->taken * n[x];                   /* (1.10) */
+        h[x] = work->scale * work->turned[x] + work->stretch * work->v_t[x]; /* (1.11) */
+        h[x] = lanes_keep(work->touching, h[x]);
     }
-
-    /* Coulomb: the spring keeps no more than friction can hold, and what slides has no dashpot.
-     * Without a sliding lane nothing would change, so skipping it changes no bit.       (1.12)
-     */
-    const lanes h_squared = contact_law_dot(h, h);
-    const lanes_mask sliding = h_squared > limit * limit;
-    if (ledger)
-        result->lost_friction = zero;
-    if (lanes_any(sliding)) {
-        const lanes ratio = lanes_where(sliding, limit / lanes_sqrt(h_squared), one);
-        c_t = lanes_where(sliding, zero, c_t);
-        if (ledger) {
-            const lanes both = contact_law_dot(kept, h) + ratio * h_squared;
-            result->lost_friction =
-                lanes_keep(sliding, 0.5 * both * (one - ratio) / k_t); /* [J]      (1.16) */
-        }
-        for (int x = 0; x < 3; x++)
-            h[x] *= ratio;
-    }
-    for (int x = 0; x < 3; x++)
-        result->tangential[x] = -h[x] - c_t * v_t[x]; /* [N]      (1.13) */
 
     if (ledger) {
-        const lanes_mask touched = radius_old > zero;
-        const lanes inverse_tangential = one / pair->tangential;
-        const lanes t_squared = contact_law_dot(turned, turned);
-        const lanes before = lanes_keep(touched, (t_squared + h_n * h_n) * inverse_old);
-        const lanes after = lanes_keep(touching, scale * scale * t_squared / radius);
-        const lanes dropped = (one - scale) * contact_law_dot(turned, v_t) * dt;
-        result->lost_law = 0.5 * (lanes_keep(touched, inverse_tangential * (before - after)) +
-                                  dropped); /* [J]      (1.18) */
-        /* The dashpot's own force brings the velocity from the half step to the step. */
-        const lanes half = 1.75 * meeting->inverse_mass * dt;
-        const lanes power =
-            contact_law_dot(v_t, v_t) + half * contact_law_dot(v_t, result->tangential);
-        result->lost_damping += c_t * power * dt; /* [J]      (1.17) */
+        work->turned_turned = contact_law_dot(work->turned, work->turned);
+        work->turned_v = contact_law_dot(work->turned, work->v_t);
+        work->v_v = contact_law_dot(work->v_t, work->v_t);
     }
-    for (int x = 0; x < 3; x++)
+
+    /* The spring keeps no more than friction can hold, and what slides has no dashpot.  Without a
+     * sliding lane nothing would change, so skipping it changes no bit. */
+    work->trial_squared = contact_law_dot(h, h);
+    work->sliding = work->trial_squared > limit * limit;
+    work->ratio = one;
+    if (lanes_any(work->sliding)) {
+        const lanes ratio = limit / lanes_sqrt(work->trial_squared);
+        work->ratio = lanes_where(work->sliding, ratio, one); /* (1.12) */
+        work->c_t = lanes_where(work->sliding, lanes_all(0.0), work->c_t);
+#pragma GCC unroll 3
+        for (int x = 0; x < 3; x++)
+            h[x] *= work->ratio;
+    }
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++) {
+        result->tangential[x] = -h[x] - work->c_t * work->v_t[x]; /* (1.13) */
         history[CONTACT_LAW_FORCE + x] = h[x];
-    history[CONTACT_LAW_RADIUS] = radius;
+    }
+}
+
+/* Where the work of this contact went in this step, but for what it stores. */
+LANES_INLINE void contact_law_ledger(const struct contact_law_work *work,
+                                     const struct contact_law_meeting *meeting,
+                                     const struct contact_law_constants *pair, lanes dt,
+                                     struct contact_law_result *result)
+{
+    const lanes one = lanes_all(1.0), softness = one / pair->tangential; /* [1/Pa] */
+    const lanes inverse_a = one / work->radius; /* infinite where they do not touch [1/m] */
+    const lanes kept_kept = work->scale * work->scale * work->turned_turned;
+    const lanes kept_v = work->scale * work->turned_v;
+
+    /* Sliding: the mean of the spring's force before and after, times how far it slid. */
+    const lanes both = kept_kept + work->stretch * kept_v + work->ratio * work->trial_squared;
+    const lanes slid = 0.5 * softness * inverse_a * both * (one - work->ratio);
+    result->lost_friction = lanes_keep(work->sliding, slid); /* (1.16) */
+
+    /* Dashpots.  The tangential velocity comes from the half step to the step by what this
+     * contact's own force does to it: 7/4 dt / m* f. */
+    const lanes half = 1.75 * meeting->inverse_mass * dt;
+    const lanes v_v_now = work->v_v - half * (kept_v + (work->stretch + work->c_t) * work->v_v);
+    const lanes normal_power = (work->f_elastic - result->normal) * work->v_now; /* [W] */
+    result->lost_damping = (normal_power + work->c_t * v_v_now) * dt;            /* (1.17) */
+
+    /* The memory turned, the stiffness changed, and work was done against the force before. */
+    const lanes turned = work->turned_turned + work->taken * work->taken;
+    const lanes after = lanes_keep(work->touching, kept_kept * inverse_a);
+    const lanes dropped =
+        lanes_keep(work->touched, softness * (turned * work->inverse_old - after));
+    result->lost_law = 0.5 * (dropped + (work->turned_v - kept_v) * dt); /* (1.18) */
 }
 
 /*
- * The law.  `history` has CONTACT_LAW_HISTORY lanes and is brought to the present.  Where
- * surfaces do not touch, forces are zero and the history becomes +0.0; with the ledger on, what
- * a contact that has just ended still held is counted as lost, so call once more after the end.
+ * The law.  `history` has CONTACT_LAW_HISTORY lanes and is brought to the present.  Where surfaces
+ * do not touch, forces are zero and the history becomes +0.0; with the ledger on, what a contact
+ * that has just ended still held is counted as lost, so call once more after the end.
  */
 LANES_INLINE void contact_law(const struct contact_law_meeting *meeting,
                               const struct contact_law_constants *pair, lanes dt, bool ledger,
                               lanes *history, struct contact_law_result *result)
 {
-    const lanes *n = meeting->normal;
-    const lanes v_n = contact_law_dot(meeting->velocity, n); /* [m/s] */
-    const lanes v_t[3] = {meeting->velocity[0] - v_n * n[0], meeting->velocity[1] - v_n * n[1],
-                          meeting->velocity[2] - v_n * n[2]}; /* [m/s] */
-    const lanes radius =
-        lanes_sqrt(meeting->overlap / meeting->inverse_radius); /* [m]  (1.3) */
-    const lanes c_n =
-        pair->damping * lanes_sqrt(radius / meeting->inverse_mass); /*     (1.5) */
+    const lanes *n = meeting->normal, *v = meeting->velocity;
+    struct contact_law_work work = {.touching = meeting->overlap > lanes_all(0.0),
+                                    .touched = history[CONTACT_LAW_RADIUS] > lanes_all(0.0)};
 
-    contact_law_push(meeting, pair, radius, v_n, c_n, dt, ledger, history, result);
-    contact_law_grip(meeting, pair, radius, v_t, pair->damping_ratio * c_n, dt, ledger, history,
-                     result);
+    work.radius = lanes_sqrt(meeting->overlap / meeting->inverse_radius); /* (1.4) */
+    work.v_n = contact_law_dot(v, n);
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++)
+        work.v_t[x] = v[x] - work.v_n * n[x];
+    contact_law_push(&work, meeting, pair, history, result);
+    contact_law_grip(&work, meeting, pair, dt, ledger, history, result);
+    if (ledger)
+        contact_law_ledger(&work, meeting, pair, dt, result);
+    history[CONTACT_LAW_RADIUS] = work.radius;
+    history[CONTACT_LAW_VELOCITY] = lanes_keep(work.touching, work.v_n);
 }
 
 #if LANES_WIDTH == 1
@@ -193,8 +225,7 @@ LANES_INLINE void contact_law_scalar(const struct contact_law_meeting *meeting,
     contact_law(meeting, &constants, dt, ledger, history, result);
 }
 
-/* Elastic energy that a touching contact holds: Hertz and the tangential spring [J].     (1.15)
- */
+/* Elastic energy that a touching contact holds: Hertz and the tangential spring [J]. (1.15) */
 LANES_INLINE double contact_law_elastic_energy(double overlap, double inverse_radius,
                                                const struct material_pair *pair,
                                                const double history[CONTACT_LAW_HISTORY])
