@@ -44,10 +44,18 @@ static void mistake(const struct check *check, const char *path, const char *for
 /* Did the schema find nothing wrong below this path? */
 static bool is_clean(const struct check *check, const char *path)
 {
+    if (check->n_before >= SCHEMA_MISTAKES)
+        return false; /* some are not listed */
     for (int i = 0; i < check->n_before; i++)
         if (strstr(check->mistakes->list[i].text, path) != NULL)
             return false;
     return true;
+}
+
+/* A mapping of materials that is refused leaves names that mean nothing. */
+static bool is_material(const struct check *check, int material)
+{
+    return material >= 0 && material < check->job->n_materials;
 }
 
 #define PATH(...) snprintf(path, sizeof path, __VA_ARGS__)
@@ -195,7 +203,7 @@ static void csv_check(const struct check *check, int i, bool *group)
         const int column = column_find(header, "material");
         if (column >= 0)
             csv_materials(check, spheres->file, in, column, group);
-        else if (spheres->material >= 0)
+        else
             group[spheres->material] = true;
     }
     free(header);
@@ -234,7 +242,7 @@ static void spheres_check(const struct check *check, bool read_files, bool *fall
     for (int i = 0; i < job->n_spheres; i++) {
         char path[64];
         PATH("spheres.%d.", i);
-        if (!is_clean(check, path))
+        if (!is_clean(check, path) || !is_material(check, job->spheres[i].material))
             continue;
         check->used[job->spheres[i].material] = true; /* even where a CSV file names others */
         if (job->spheres[i].packing == JOB_PACKING_LATTICE)
@@ -319,7 +327,7 @@ static void bodies_check(const struct check *check, bool *standing)
         const struct job_body *body = &job->bodies[i];
         char path[64];
         PATH("bodies.%d.", i);
-        if (!is_clean(check, path))
+        if (!is_clean(check, path) || !is_material(check, job->bodies[i].material))
             continue;
         standing[body->material] = true;
         if (body->geometry == JOB_GEOMETRY_BOX)
@@ -365,7 +373,7 @@ static void pairs_check(const struct check *check, const bool *falling, const bo
         const struct job_pair *pair = &job->pairs[k];
         char path[64];
         PATH("contact.pairs.%d", k);
-        if (pair->a < 0 || pair->b < 0)
+        if (!is_material(check, pair->a) || !is_material(check, pair->b))
             continue;
         const size_t a = (size_t)(pair->a < pair->b ? pair->a : pair->b);
         const size_t b = (size_t)(pair->a < pair->b ? pair->b : pair->a);

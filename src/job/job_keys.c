@@ -24,6 +24,7 @@
 #define ABOVE(low)    .bounds = SCHEMA_ABOVE, .min = (low)
 #define BETWEEN(low, high)                                                                     \
     .bounds = SCHEMA_AT_LEAST | SCHEMA_AT_MOST, .min = (low), .max = (high)
+#define UP_TO(high)         .bounds = SCHEMA_AT_MOST, .max = (high)
 #define ABOVE_TO(low, high) .bounds = SCHEMA_ABOVE | SCHEMA_AT_MOST, .min = (low), .max = (high)
 #define INSIDE(low, high)   .bounds = SCHEMA_ABOVE | SCHEMA_BELOW, .min = (low), .max = (high)
 
@@ -82,8 +83,7 @@ static const struct schema_key contact_keys[] = {
     {"pairs", SCHEMA_LIST,
      "what happens between two materials; every two that can meet need one (spheres among each other, "
      "spheres with bodies)",
-     BETWEEN(0.0, JOB_KEYS_MAX_PAIRS), .inside = pair_keys,
-     LIST_AT(struct job, pairs, n_pairs)},
+     UP_TO(JOB_KEYS_MAX_PAIRS), .inside = pair_keys, LIST_AT(struct job, pairs, n_pairs)},
     END};
 
 static const struct schema_key packing_keys[] = {
@@ -291,14 +291,15 @@ const struct schema_key job_keys[] = {
      "mass-proportional damping: a force of -damping x mass x velocity on every sphere",
      .unit = "1/s", .standard = "0", BETWEEN(0.0, 1e9), AT(struct job, damping)},
     {"materials", SCHEMA_NAMED, "materials by name; those that nothing uses are left out",
-     .required = true, .inside = material_keys, LIST_AT(struct job, materials, n_materials)},
+     .required = true, UP_TO(1000.0), .inside = material_keys,
+     LIST_AT(struct job, materials, n_materials)},
     {"contact", SCHEMA_GROUP, "what happens between materials", .inside = contact_keys},
     {"spheres", SCHEMA_LIST, "groups of spheres; ids run through them in this order",
      .required = true, BETWEEN(1.0, 10000.0), .inside = spheres_keys,
      LIST_AT(struct job, spheres, n_spheres)},
     {"bodies", SCHEMA_LIST, "surfaces of quads and triangles, at rest or moving as prescribed",
-     BETWEEN(0.0, 10000.0), .inside = body_keys, LIST_AT(struct job, bodies, n_bodies)},
-    {"sections", SCHEMA_LIST, "planes that count what passes through them", BETWEEN(0.0, 60.0),
+     UP_TO(10000.0), .inside = body_keys, LIST_AT(struct job, bodies, n_bodies)},
+    {"sections", SCHEMA_LIST, "planes that count what passes through them", UP_TO(60.0),
      .inside = section_keys, LIST_AT(struct job, sections, n_sections)},
     {"domain", SCHEMA_GROUP, "the region that spheres may be in", .inside = domain_keys},
     {"decomposition", SCHEMA_GROUP, "how the work is shared among ranks; changes no result",

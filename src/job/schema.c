@@ -3,7 +3,7 @@
  * is listed with its place, so a person mends a file in one go.  Defaults take the same path as values
  * that were given, so a wrong default shows in the first test.
  *
- * After MISTAKES_LISTED mistakes the rest is cut off: nobody mends more at once, and a file of a
+ * After SCHEMA_MISTAKES mistakes the rest is cut off: nobody mends more at once, and a file of a
  * million wrong keys must not take minutes.
  */
 #include "job/schema.h"
@@ -22,7 +22,7 @@
 #include "base/vec3.h"
 #include "job/yaml_tree.h"
 
-enum { MISTAKES_LISTED = 200, PATH_LENGTH = 200, WORD_LENGTH = 40 };
+enum { PATH_LENGTH = 200, WORD_LENGTH = 40 };
 
 /* One value on its way from the file into the struct. */
 struct item {
@@ -39,9 +39,9 @@ static void mistake(const struct schema_reader *reader, const char *file, int li
 static void mistake(const struct schema_reader *reader, const char *file, int line, int column,
                     const char *format, ...)
 {
-    if (reader->mistakes->n > MISTAKES_LISTED)
+    if (reader->mistakes->n > SCHEMA_MISTAKES)
         return;
-    if (reader->mistakes->n == MISTAKES_LISTED) {
+    if (reader->mistakes->n == SCHEMA_MISTAKES) {
         mistakes_add(reader->mistakes, file, line, column,
                      "there may be more mistakes from here on");
         return;
@@ -131,24 +131,28 @@ static size_t n_components(const struct schema_key *key)
     return key->type == SCHEMA_NUMBER ? key->size / sizeof(double) : key->size / sizeof(int);
 }
 
-/* " above 0 m and at most 1 m" */
+/* " above 0 m", " between 0.05 and 1", " above 0 and below 1 m" */
 static void bounds_describe(const struct schema_key *key, char *text, size_t n)
 {
     char low[SCHEMA_DOUBLE], high[SCHEMA_DOUBLE];
-    const bool pure = key->unit == NULL || strcmp(key->unit, "1") == 0;
-    const bool has_low = (key->bounds & (SCHEMA_AT_LEAST | SCHEMA_ABOVE)) != 0;
-    const bool has_high = (key->bounds & (SCHEMA_AT_MOST | SCHEMA_BELOW)) != 0;
-    const int used =
-        snprintf(text, n, "%s%s",
-                 has_low ? (key->bounds & SCHEMA_ABOVE) != 0 ? " above " : " of at least " : "",
-                 has_low ? schema_double(low, key->min) : "");
-    if (has_high)
-        snprintf(text + used, n - (size_t)used, "%s%s%s", has_low ? " and" : "",
-                 (key->bounds & SCHEMA_BELOW) != 0 ? " below " : " at most ",
-                 schema_double(high, key->max));
-    const size_t length = strlen(text);
-    if (!pure && key->bounds != 0)
-        snprintf(text + length, n - length, " %s", key->unit);
+    const char *unit = key->unit == NULL || strcmp(key->unit, "1") == 0 ? "" : key->unit;
+    const char *blank = unit[0] != '\0' ? " " : "";
+    const bool above = (key->bounds & SCHEMA_ABOVE) != 0,
+               below = (key->bounds & SCHEMA_BELOW) != 0;
+    const bool has_low = above || (key->bounds & SCHEMA_AT_LEAST) != 0;
+    const bool has_high = below || (key->bounds & SCHEMA_AT_MOST) != 0;
+    schema_double(low, key->min);
+    schema_double(high, key->max);
+    text[0] = '\0';
+    if (has_low && has_high && !above && !below)
+        snprintf(text, n, " between %s and %s%s%s", low, high, blank, unit);
+    else if (has_low && has_high)
+        snprintf(text, n, " %s %s and %s %s%s%s", above ? "above" : "of at least", low,
+                 below ? "below" : "at most", high, blank, unit);
+    else if (has_low)
+        snprintf(text, n, " %s %s%s%s", above ? "above" : "of at least", low, blank, unit);
+    else if (has_high)
+        snprintf(text, n, " %s %s%s%s", below ? "below" : "of at most", high, blank, unit);
 }
 
 static void choices_describe(const struct schema_key *key, char *text, size_t n)
@@ -214,11 +218,13 @@ const char *schema_expected(const struct schema_key *key, char text[SCHEMA_EXPEC
     case SCHEMA_GROUP:
         return "a mapping (key: value)";
     case SCHEMA_LIST:
-        snprintf(text, SCHEMA_EXPECTED, "a list of mappings (- key: value)%s%s",
-                 key->bounds != 0 ? " with a length" : "", bounds);
+        snprintf(text, SCHEMA_EXPECTED, "a list of %s%.0f mappings (- key: value)",
+                 (key->bounds & SCHEMA_AT_LEAST) != 0 ? "1 to " : "at most ", key->max);
         return text;
     case SCHEMA_NAMED:
-        return "a mapping of names to mappings (name: {key: value})";
+        snprintf(text, SCHEMA_EXPECTED,
+                 "a mapping of at most %.0f names to mappings (name: {key: value})", key->max);
+        return text;
     case SCHEMA_INCLUDE:
         return "the path of a file, or a list of them,";
     }
@@ -533,9 +539,9 @@ static void elements_read(const struct item *item)
     const bool named = key->type == SCHEMA_NAMED;
     if (!has_kind(item, node, named ? YAML_TREE_MAPPING : YAML_TREE_LIST))
         return;
-    if (key->type == SCHEMA_LIST && !is_within(key, node->n)) {
+    if (!is_within(key, node->n)) {
         char what[64];
-        snprintf(what, sizeof what, "a list of %d", node->n);
+        snprintf(what, sizeof what, "%s of %d", kind_described(node->kind), node->n);
         refuse(item, node, what);
         return;
     }
@@ -688,6 +694,19 @@ static void unknown_report(const struct schema_reader *reader, const struct sche
                 "unknown key %s; one of %s is expected", where, all);
 }
 
+/* Lists a key that is for another kind than the mapping's. */
+static void kind_report(const struct schema_reader *reader, const struct schema_key *table,
+                        int kind, const struct yaml_tree_node *child, const char *path)
+{
+    char where[PATH_LENGTH];
+    const struct schema_key *key = table;
+    while (strcmp(key->name, "kind") != 0)
+        key++;
+    mistake(reader, child->file, child->key_line, child->key_column,
+            "%s does not go with kind %s; a key of that kind is expected",
+            path_join(where, path, child->key), key->choices[kind]);
+}
+
 static void keys_check(const struct schema_reader *reader, const struct schema_key *table,
                        int kind, const struct yaml_tree_node *node, const char *path)
 {
@@ -698,10 +717,8 @@ static void keys_check(const struct schema_reader *reader, const struct schema_k
         if (key->name == NULL)
             unknown_report(reader, table, kind, child, path);
         else if (kind >= 0 && !applies(key, kind))
-            mistake(reader, child->file, child->key_line, child->key_column,
-                    "%s%s%s does not go with this kind; a key of the kind is expected", path,
-                    path[0] != '\0' ? "." : "", key->name);
-        if (reader->mistakes->n > MISTAKES_LISTED)
+            kind_report(reader, table, kind, child, path);
+        if (reader->mistakes->n > SCHEMA_MISTAKES)
             break;
     }
 }
@@ -719,7 +736,7 @@ void schema_read(const struct schema_reader *reader, const struct schema_key *ta
     if (node->kind != YAML_TREE_MAPPING) {
         mistake(reader, node->file, node->line, node->column,
                 "%s is %s; a mapping (key: value) is expected",
-                path[0] != '\0' ? path : "the whole", kind_described(node->kind));
+                path[0] != '\0' ? path : "the file", kind_described(node->kind));
         return;
     }
     const int kind = kind_find(table, node);

@@ -71,6 +71,9 @@ struct schema_reader {
     const char *const *names;
 };
 
+/* More mistakes than these are not listed. */
+enum { SCHEMA_MISTAKES = 200 };
+
 /* Fills a zeroed struct from a node.  All mistakes are listed; what is wrong stays zero.  `path` names
  * the node in messages ("" for the root).  Local. */
 void schema_read(const struct schema_reader *reader, const struct schema_key *table,

@@ -26,12 +26,11 @@ static void kinds_write(FILE *out, const struct schema_key *table, const struct 
 static void row_write(FILE *out, const struct schema_key *table, const struct schema_key *key,
                       const char *path)
 {
-    char expected[SCHEMA_EXPECTED];
-    snprintf(expected, sizeof expected, "%s", schema_expected(key, expected));
+    char text[SCHEMA_EXPECTED];
+    const char *expected = schema_expected(key, text);
     const size_t length = strlen(expected);
-    if (length > 0 && expected[length - 1] == ',')
-        expected[length - 1] = '\0'; /* the comma is for sentences */
-    fprintf(out, "| `%s` | %s", path, expected);
+    const bool comma = length > 0 && expected[length - 1] == ','; /* is for sentences */
+    fprintf(out, "| `%s` | %.*s", path, (int)(comma ? length - 1 : length), expected);
     if (key->unit != NULL && strcmp(key->unit, "1") != 0 && strstr(expected, key->unit) == NULL)
         fprintf(out, " [%s]", key->unit);
     if (key->required)
