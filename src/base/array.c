@@ -41,8 +41,9 @@ void *array_allocate_rows(size_t n, size_t size)
 
 void *array_resize(void *old, size_t n_old, size_t n, size_t size)
 {
-    char *memory = realloc(old, checked_bytes(n > 0 ? n : 1, size));
-    CHECK(memory != NULL, "out of memory: %zu bytes asked for", n * size);
+    const size_t bytes = checked_bytes(n, size);
+    char *memory = realloc(old, bytes > 0 ? bytes : 1);
+    CHECK(memory != NULL, "out of memory: %zu bytes asked for", bytes);
     if (n > n_old)
         memset(memory + n_old * size, 0, (n - n_old) * size);
     return memory;
@@ -59,9 +60,9 @@ void *array_resize_rows(void *old, size_t n_old, size_t n, size_t size)
 
 char *array_string(const char *text)
 {
-    const size_t length = strlen(text);
-    char *copy = array_allocate(length + 1, 1);
-    memcpy(copy, text, length);
+    const size_t size = strlen(text) + 1;
+    char *copy = array_allocate(size, 1);
+    memcpy(copy, text, size);
     return copy;
 }
 

@@ -9,12 +9,13 @@
 
 enum { LIMB_BITS = 40, TERMS_MAX = 1 << 22 };
 
+static const double LIMIT = 0x1p60;
 static const double UNIT[3] = {0x1p10, 0x1p-30, 0x1p-70};
 static const double PER_UNIT[3] = {0x1p-10, 0x1p30, 0x1p70};
 
 double exact_sum_add(struct exact_sum *sum, double term)
 {
-    if (!(term < 0x1p60 && term > -0x1p60)) {
+    if (!(term < LIMIT && term > -LIMIT)) {
         sum->overflow++;
         return 0.0;
     }
