@@ -24,6 +24,17 @@ static inline void gather_spent(struct spent *spent, const double *v, const doub
     }
 }
 
+/* What mass-proportional damping takes in a step: c m v(n)^2 dt [J]. */
+static inline double background_loss(const struct integrate_work *work, quad before, quad after,
+                                     double inverse_mass)
+{
+    if (!(work->damping > 0.0))
+        return 0.0;
+    const quad v = 0.5 * (before + after);
+    const double speed2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    return work->damping * work->dt / inverse_mass * speed2;
+}
+
 /* The two factors of v(n+1/2) = keep v(n-1/2) + push a(n) dt under mass-proportional damping c:
  * (1 - c dt/2)/(1 + c dt/2) and 1/(1 + c dt/2).                                                 (5.3) */
 static inline void move_spheres(struct integrate_work *work, struct spent *spent, double keep, double push,
@@ -44,7 +55,7 @@ static inline void move_spheres(struct integrate_work *work, struct spent *spent
         const quad w = spin[1] * kept + force[1] * velocity_only * turn;
         if (ledger) {
             work->dissipated_friction[i] += force[0][3];
-            work->dissipated_damping[i] += force[1][3];
+            work->dissipated_damping[i] += force[1][3] + background_loss(work, motion[1], v, inverse_mass);
         }
         const quad x = motion[0] + v * step;
         motion[0] = x;

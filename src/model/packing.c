@@ -1,0 +1,184 @@
+/*
+ * See packing.h.  A CSV file begins with a header that names its columns: x_m, y_m, z_m and, where
+ * given, radius_m, material, vx_m_s, vy_m_s, vz_m_s; what it leaves out the group says.  The file is
+ * held in memory while the scene is built.
+ */
+#include "model/packing.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "job/job.h"
+
+enum column { COLUMN_X, COLUMN_Y, COLUMN_Z, COLUMN_RADIUS, COLUMN_MATERIAL, COLUMN_VX, COLUMN_VY, COLUMN_VZ };
+enum { N_COLUMNS = 8, CELLS_MAX = 32, LINE_MAX_SIZE = 4096 };
+
+static const char *const COLUMN_NAMES[N_COLUMNS] = {"x_m",      "y_m",    "z_m",    "radius_m",
+                                                    "material", "vx_m_s", "vy_m_s", "vz_m_s"};
+
+struct reader {
+    const char *path;
+    int line;
+    int n_cells;
+    int column[CELLS_MAX]; /* which column a cell of a row is; -1: none of ours */
+    char **why;
+};
+
+static bool complain(struct reader *reader, int cell, const char *what)
+{
+    *reader->why = array_format("%s:%d:%d: %s", reader->path, reader->line, cell + 1, what);
+    return false;
+}
+
+/* Splits a line at commas, in place; returns the number of cells. */
+static int split(char *line, char *cells[CELLS_MAX])
+{
+    int n = 0;
+    line[strcspn(line, "\r\n")] = '\0';
+    for (char *at = line; n < CELLS_MAX; at++) {
+        cells[n++] = at;
+        at += strcspn(at, ",");
+        if (*at == '\0')
+            break;
+        *at = '\0';
+    }
+    return n;
+}
+
+static bool read_header(struct reader *reader, char *line)
+{
+    char *cells[CELLS_MAX];
+    int seen = 0;
+    reader->n_cells = split(line, cells);
+    for (int c = 0; c < reader->n_cells; c++) {
+        reader->column[c] = -1;
+        for (int k = 0; k < N_COLUMNS; k++) {
+            if (strcmp(cells[c], COLUMN_NAMES[k]) == 0) {
+                reader->column[c] = k;
+                seen |= 1 << k;
+            }
+        }
+    }
+    if ((seen & 7) != 7)
+        return complain(reader, 0, "the header names no places; columns x_m,y_m,z_m are expected");
+    return true;
+}
+
+static bool read_number(struct reader *reader, int cell, const char *text, double *value)
+{
+    char *end;
+    errno = 0;
+    *value = strtod(text, &end);
+    const bool whole = end != text && end[strspn(end, " \t")] == '\0';
+    if (!whole || !(*value - *value == 0.0))
+        return complain(reader, cell, "this is no number; a finite number is expected");
+    return true;
+}
+
+static bool read_row(struct reader *reader, const struct job *job, char *line, struct packing_sphere *sphere)
+{
+    char *cells[CELLS_MAX];
+    if (split(line, cells) != reader->n_cells)
+        return complain(reader, 0, "this row has another number of cells than the header; as many are expected");
+    double *const targets[N_COLUMNS] = {&sphere->position.x, &sphere->position.y, &sphere->position.z,
+                                        &sphere->radius,     NULL,                &sphere->velocity.x,
+                                        &sphere->velocity.y, &sphere->velocity.z};
+    for (int c = 0; c < reader->n_cells; c++) {
+        const int column = reader->column[c];
+        if (column == COLUMN_MATERIAL) {
+            sphere->material = -1;
+            for (int m = 0; m < job->n_materials; m++)
+                sphere->material = strcmp(job->materials[m].name, cells[c]) == 0 ? m : sphere->material;
+            if (sphere->material < 0)
+                return complain(reader, c, "unknown material; one of the job's materials is expected");
+        } else if (column >= 0 && !read_number(reader, c, cells[c], targets[column])) {
+            return false;
+        }
+    }
+    if (!(sphere->radius > 0.0))
+        return complain(reader, 0, "the radius is not positive; a length above 0 is expected");
+    return true;
+}
+
+static bool read_rows(struct packing *packing, const struct job *job, FILE *file, struct reader *reader)
+{
+    const struct job_spheres *group = packing->group;
+    int64_t capacity = 0;
+    char line[LINE_MAX_SIZE];
+    while (fgets(line, sizeof line, file) != NULL) {
+        reader->line++;
+        if (reader->line == 1) {
+            if (!read_header(reader, line))
+                return false;
+            continue;
+        }
+        if (line[strspn(line, " \t\r\n")] == '\0')
+            continue;
+        ARRAY_GROW(packing->rows, packing->n + 1, capacity);
+        struct packing_sphere *sphere = &packing->rows[packing->n];
+        *sphere = (struct packing_sphere){.velocity = group->velocity,
+                                          .angular_velocity = group->spin,
+                                          .radius = group->radius,
+                                          .material = group->material};
+        if (!read_row(reader, job, line, sphere))
+            return false;
+        packing->n++;
+    }
+    if (packing->n == 0)
+        return complain(reader, 0, "there are no spheres in it; a header and at least one row are expected");
+    return true;
+}
+
+bool packing_open(struct packing *packing, const struct job *job, int group, char **why)
+{
+    *packing = (struct packing){.group = &job->spheres[group]};
+    *why = NULL;
+    if (packing->group->packing == JOB_PACKING_LATTICE) {
+        packing->n = packing->group->count;
+        return true;
+    }
+    struct reader reader = {.path = packing->group->file, .why = why};
+    FILE *file = fopen(reader.path, "r");
+    if (file == NULL) {
+        *why = array_format("%s: cannot be read (%s); a CSV file of spheres is expected", reader.path,
+                            strerror(errno));
+        return false;
+    }
+    const bool fine = read_rows(packing, job, file, &reader);
+    fclose(file);
+    if (!fine)
+        packing_close(packing);
+    return fine;
+}
+
+void packing_close(struct packing *packing)
+{
+    free(packing->rows);
+    packing->rows = NULL;
+    packing->n = 0;
+}
+
+static struct packing_sphere lattice_sphere(const struct job_spheres *group, int64_t k)
+{
+    /* As many places as fit, with a hair's breadth for what 5.28 / 0.22 does not divide to. */
+    int64_t n[2];
+    for (int c = 0; c < 2; c++) {
+        n[c] = (int64_t)(group->size[c] / group->spacing + 1e-9);
+        n[c] = n[c] > 0 ? n[c] : 1;
+    }
+    const int64_t layer = k / (n[0] * n[1]), row = k / n[0] % n[1], column = k % n[0];
+    const struct vec3 steps = {(double)column + 0.5, (double)row + 0.5, (double)layer + 0.5};
+    return (struct packing_sphere){.position = vec3_axpy(group->corner, group->spacing, steps),
+                                   .velocity = group->velocity,
+                                   .angular_velocity = group->spin,
+                                   .radius = group->radius,
+                                   .material = group->material};
+}
+
+struct packing_sphere packing_get(const struct packing *packing, int64_t k)
+{
+    return packing->rows != NULL ? packing->rows[k] : lattice_sphere(packing->group, k);
+}

@@ -1,0 +1,28 @@
+/* See critical_step.h. */
+#include "physics/critical_step.h"
+
+#include <math.h>
+
+#include "base/elementary.h"
+
+double critical_step_rayleigh(double radius, double density, double young, double poisson)
+{
+    const double pi = 3.14159265358979323846;
+    const double shear = young / (2.0 * (1.0 + poisson));
+    return pi * radius * sqrt(density / shear) / (0.1631 * poisson + 0.8766);
+}
+
+double critical_step_hertz_duration(double mass, double radius, double young, double speed)
+{
+    return 2.87 * elementary_exp(0.2 * elementary_log(mass * mass / (radius * young * young * speed)));
+}
+
+double critical_step_round_down(double x)
+{
+    double scale = 1.0;
+    while (x * scale < 10.0)
+        scale *= 10.0;
+    while (x * scale >= 100.0)
+        scale /= 10.0;
+    return (double)(int)(x * scale) / scale;
+}

@@ -1,0 +1,316 @@
+/*
+ * See drive.h.  The loop steps, saves when a checkpoint is due, shows progress, and ends for one of
+ * four reasons: the end is reached, somebody asked to stop, something failed, the disk does not take it.
+ */
+#include "run/drive.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <unistd.h>
+
+#include "base/array.h"
+#include "base/comm.h"
+#include "base/report.h"
+#include "base/timer.h"
+#include "job/job.h"
+#include "run/control.h"
+#include "run/options.h"
+#include "run/simulation.h"
+#include "run/step.h"
+#include "store/run_folder.h"
+
+/* Seconds between looks at the clock's chores: progress, status, the stop file. */
+static const double CHORES_EVERY = 1.0, LINES_EVERY = 30.0;
+
+struct drive {
+    const struct comm *comm;
+    const struct options *options;
+    const struct job *job;
+    const char *job_text;
+    struct run_folder folder; /* open on rank 0 */
+    bool resumes;
+    struct simulation sim;
+    int64_t first_step; /* of this process */
+    double started, chores_at, line_at;
+    char *stop_path;
+};
+
+static int open_folder(struct drive *drive)
+{
+    int words[2] = {REPORT_FINISHED, 0};
+    drive->folder = (struct run_folder){.path = NULL, .lock = -1};
+    if (drive->comm->rank == 0) {
+        char *path = drive->options->out != NULL ? array_string(drive->options->out)
+                                                 : array_format("runs/%s", drive->job->name);
+        bool resumes = false;
+        words[0] = run_folder_open(&drive->folder, path, drive->job_text, drive->options->fresh, &resumes);
+        words[1] = resumes;
+        if (words[0] == REPORT_FINISHED) {
+            char *log = array_format("%s/log", path);
+            words[0] = report_log_open(log) ? REPORT_FINISHED : REPORT_STORAGE;
+            drive->stop_path = array_format("%s/stop", path);
+            (void)unlink(drive->stop_path); /* what was asked of an earlier process */
+            free(log);
+        }
+        free(path);
+    }
+    comm_broadcast(drive->comm, words, sizeof words);
+    drive->resumes = words[1] != 0;
+    return words[0];
+}
+
+static void describe_run(const struct drive *drive)
+{
+    char host[128] = "";
+    (void)gethostname(host, sizeof host - 1);
+    report_note("tremie %s, %d ranks, first on %s, kernel %s", TREMIE_VERSION, drive->comm->n_ranks, host,
+                pair_kernel_isa_name(drive->sim.kernel.isa));
+}
+
+/* Tries one checkpoint; the path is rank 0's. */
+static int try_checkpoint(struct drive *drive, const char *path)
+{
+    char shared[4096] = "";
+    if (drive->comm->rank == 0)
+        snprintf(shared, sizeof shared, "%s", path);
+    comm_broadcast(drive->comm, shared, sizeof shared);
+    return simulation_restart(&drive->sim, drive->comm, drive->job, drive->options->isa, shared);
+}
+
+/* Resumes from the newest checkpoint that reads back well; *found tells whether there was any. */
+static int resume(struct drive *drive, bool *found)
+{
+    int64_t *steps = NULL;
+    int64_t n = drive->comm->rank == 0 ? run_folder_checkpoints(&drive->folder, &steps) : 0;
+    comm_broadcast(drive->comm, &n, sizeof n);
+    int status = REPORT_FINISHED;
+    *found = false;
+    for (int64_t k = 0; k < n && !*found; k++) {
+        char *path = drive->comm->rank == 0 ? run_folder_checkpoint_path(&drive->folder, steps[k]) : NULL;
+        status = try_checkpoint(drive, path);
+        *found = status == REPORT_FINISHED;
+        if (!*found && k + 1 < n)
+            report_warn("%s is not used; trying the checkpoint before it", path);
+        free(path);
+    }
+    free(steps);
+    if (n > 0 && !*found)
+        report_error("none of the %lld checkpoints can be used; start over with --fresh", (long long)n);
+    return *found || n == 0 ? REPORT_FINISHED : status;
+}
+
+/* The simulation, from a named checkpoint, the newest good one, or the scene. */
+static int prepare(struct drive *drive)
+{
+    bool found = false;
+    int status = REPORT_FINISHED;
+    if (drive->options->restart != NULL) {
+        status = try_checkpoint(drive, drive->options->restart);
+        found = status == REPORT_FINISHED;
+    } else if (drive->resumes) {
+        status = resume(drive, &found);
+    }
+    if (status != REPORT_FINISHED)
+        return status;
+    if (!found)
+        simulation_create(&drive->sim, drive->comm, drive->job, drive->options->isa);
+    describe_run(drive);
+    if (found)
+        report_say("resumes at step %lld (%.6g s)", (long long)drive->sim.step, (double)drive->sim.step * drive->sim.dt);
+    if (drive->comm->rank == 0)
+        status = run_folder_rewind(&drive->folder, drive->sim.step);
+    return comm_agree(drive->comm, status);
+}
+
+/* ------------------------------------------------------------------------------------ chores */
+
+static void format_duration(char *text, size_t size, double seconds)
+{
+    const long s = (long)(seconds + 0.5);
+    if (s < 3600)
+        snprintf(text, size, "%ld:%02ld", s / 60, s % 60);
+    else
+        snprintf(text, size, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
+}
+
+static void write_status(const struct drive *drive, const char *state, double rate, const char *left)
+{
+    const struct simulation *sim = &drive->sim;
+    char *text = array_format("state: %s\nstep: %lld of %lld\ntime: %.6g of %.6g s\nspheres: %lld\n"
+                              "rate: %.3g million particle-steps/s on %d ranks\nremaining: %s\n",
+                              state, (long long)sim->step, (long long)sim->n_steps, (double)sim->step * sim->dt,
+                              (double)sim->n_steps * sim->dt, (long long)sim->n_spheres, rate * 1e-6,
+                              drive->comm->n_ranks, left);
+    run_folder_status(&drive->folder, text);
+    free(text);
+}
+
+/* Progress, status and the stop file; on rank 0. */
+static void do_chores(struct drive *drive)
+{
+    const double now = timer_now();
+    struct simulation *sim = &drive->sim;
+    if (drive->comm->rank != 0 || now < drive->chores_at)
+        return;
+    drive->chores_at = now + CHORES_EVERY;
+    const double done = (double)(sim->step - drive->first_step), elapsed = now - drive->started;
+    const double rate = elapsed > 0.0 ? done * (double)sim->n_spheres / elapsed : 0.0;
+    char left[32] = "unknown";
+    if (done > 0.0)
+        format_duration(left, sizeof left, elapsed / done * (double)(sim->n_steps - sim->step));
+    const bool keep = now >= drive->line_at;
+    if (keep)
+        drive->line_at = now + LINES_EVERY;
+    report_progress(keep && !isatty(STDERR_FILENO),
+                    "step %lld of %lld, %.4g s, %.3g million particle-steps/s, overlap %.2g, imbalance %.2f, %s left",
+                    (long long)sim->step, (long long)sim->n_steps, (double)sim->step * sim->dt, rate * 1e-6,
+                    sim->watch.overlap, sim->balance.imbalance > 0.0 ? sim->balance.imbalance : 1.0, left);
+    write_status(drive, "running", rate, left);
+    if (access(drive->stop_path, F_OK) == 0)
+        sim->watch.stop_asked = true; /* collective with the next step's reduction */
+}
+
+static bool checkpoint_is_due(struct drive *drive)
+{
+    struct simulation *sim = &drive->sim;
+    const int64_t every = drive->job->checkpoint.every_steps;
+    const bool due = sim->watch.checkpoint_due || (every > 0 && sim->step % every == 0);
+    sim->watch.checkpoint_due = false;
+    if (due)
+        sim->watch.checkpoint_at = timer_now() + sim->watch.checkpoint_every;
+    return due;
+}
+
+static int save(struct drive *drive)
+{
+    const int status = simulation_save(&drive->sim, &drive->folder, drive->job_text);
+    if (status == REPORT_FINISHED)
+        report_note("checkpoint at step %lld (%.6g s)", (long long)drive->sim.step,
+                    (double)drive->sim.step * drive->sim.dt);
+    else
+        report_error("the checkpoint of step %lld could not be written; the one before stands, make room and "
+                     "give the same command again",
+                     (long long)drive->sim.step);
+    return status;
+}
+
+static int loop(struct drive *drive)
+{
+    struct simulation *sim = &drive->sim;
+    int64_t saved_at = sim->step > 0 ? sim->step : -1;
+    int status = REPORT_FINISHED;
+    while (sim->step < sim->n_steps && !sim->watch.stop_agreed && sim->watch.failure == WATCH_FINE) {
+        step(sim);
+        do_chores(drive);
+        if (sim->watch.failure == WATCH_FINE && checkpoint_is_due(drive)) {
+            status = save(drive);
+            saved_at = sim->step;
+        }
+        if (status != REPORT_FINISHED)
+            return status;
+    }
+    if (sim->watch.failure != WATCH_FINE) {
+        watch_explain(&sim->watch, sim);
+        return REPORT_UNSTABLE;
+    }
+    if (saved_at != sim->step)
+        status = save(drive);
+    return status;
+}
+
+/* The rows of the last instant: its forces are computed but nothing moves any more. */
+static int finish_series(struct drive *drive)
+{
+    struct simulation *sim = &drive->sim;
+    step_forces(sim);
+    sim->step++; /* the segment is named after the step that would be next; a longer run replaces it */
+    const int status = simulation_save_series(sim, &drive->folder);
+    sim->step--;
+    return status;
+}
+
+static int finish(struct drive *drive, int status)
+{
+    struct simulation *sim = &drive->sim;
+    const double elapsed = timer_now() - drive->started;
+    const double done = (double)(sim->step - drive->first_step);
+    char took[32];
+    if (status == REPORT_FINISHED && sim->step < sim->n_steps)
+        status = REPORT_STOPPED;
+    if (status == REPORT_FINISHED)
+        status = finish_series(drive);
+    format_duration(took, sizeof took, elapsed);
+    const double rate = elapsed > 0.0 ? done * (double)sim->n_spheres / elapsed : 0.0;
+    if (status == REPORT_FINISHED)
+        report_say("finished at step %lld (%.6g s) after %s: %.3g million particle-steps/s", (long long)sim->step,
+                   (double)sim->step * sim->dt, took, rate * 1e-6);
+    else if (status == REPORT_STOPPED)
+        report_say("stopped with a checkpoint at step %lld of %lld; the same command resumes", (long long)sim->step,
+                   (long long)sim->n_steps);
+    if (drive->comm->rank == 0)
+        write_status(drive,
+                     status == REPORT_FINISHED  ? "finished"
+                     : status == REPORT_STOPPED ? "stopped"
+                                                : "failed",
+                     rate, status == REPORT_FINISHED ? "0:00" : "unknown");
+    return status;
+}
+
+int drive_run(const struct comm *comm, const struct options *options, const struct job *job, const char *job_text)
+{
+    struct drive drive = {.comm = comm, .options = options, .job = job, .job_text = job_text};
+    int status = open_folder(&drive);
+    if (status == REPORT_FINISHED) {
+        status = prepare(&drive);
+        if (status == REPORT_FINISHED) {
+            drive.first_step = drive.sim.step;
+            drive.started = timer_now();
+            drive.chores_at = drive.started + CHORES_EVERY;
+            drive.line_at = drive.started + LINES_EVERY;
+            if (drive.sim.step >= drive.sim.n_steps && drive.resumes)
+                report_say("nothing to do: the run has reached its end");
+            else
+                status = finish(&drive, loop(&drive));
+            simulation_destroy(&drive.sim);
+        }
+        if (comm->rank == 0)
+            run_folder_close(&drive.folder);
+    }
+    free(drive.stop_path);
+    return status;
+}
+
+/* ------------------------------------------------------------------------------- from outside */
+
+int drive_status(const char *run)
+{
+    char *path = array_format("%s/status", run), line[256];
+    FILE *file = fopen(path, "r");
+    if (file == NULL)
+        report_error("%s cannot be read; name the folder of a run", path);
+    free(path);
+    if (file == NULL)
+        return REPORT_BAD_INPUT;
+    while (fgets(line, sizeof line, file) != NULL)
+        fputs(line, stdout);
+    fclose(file);
+    return REPORT_FINISHED;
+}
+
+int drive_stop(const char *run)
+{
+    char *status = array_format("%s/status", run), *stop = array_format("%s/stop", run);
+    int result = REPORT_FINISHED;
+    if (access(status, F_OK) != 0) {
+        report_error("%s is not a run's folder, or its run has not begun; name the folder of a run", run);
+        result = REPORT_BAD_INPUT;
+    } else {
+        result = run_folder_write_file(stop, "stop\n");
+    }
+    if (result == REPORT_FINISHED)
+        report_say("asked the run in %s to stop with a checkpoint", run);
+    free(status);
+    free(stop);
+    return result;
+}

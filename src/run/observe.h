@@ -1,0 +1,54 @@
+/*
+ * What a run reports over time: the rows of the "series" table, and the running totals behind them.
+ *
+ * A sample belongs to the instant step * dt: it is taken when the forces of that instant are known and
+ * before spheres move on, so velocities are brought from the half step to the step with them.  All totals
+ * over ranks are exact sums, so rows do not depend on who owned what.  Totals that run over steps are
+ * state: "monitors" in checkpoints.
+ */
+#ifndef TREMIE_RUN_OBSERVE_H
+#define TREMIE_RUN_OBSERVE_H
+
+#include <stdint.h>
+
+#include "base/exact_sum.h"
+#include "store/series.h"
+
+struct simulation;
+
+/* Totals beside those of bodies and sections.  Shares of this rank. */
+enum observe_total {
+    OBSERVE_ENERGY_START,        /* all energy at step 0 [J] */
+    OBSERVE_REMOVED_ENERGY,      /* carried away by spheres that left [J] */
+    OBSERVE_REMOVED_FRICTION,    /* dissipated by them before they left [J] */
+    OBSERVE_REMOVED_DAMPING,
+    OBSERVE_REMOVED_TANGENTIAL,
+    OBSERVE_LAST_STEP,           /* step of the last sample, plus one; on rank 0 */
+    OBSERVE_OVERLAP,             /* largest overlap/radius since then, times 2^40; on rank 0 */
+    OBSERVE_N_TOTALS,
+};
+
+struct observe {
+    struct exact_sum totals[OBSERVE_N_TOTALS];
+    struct series table; /* on rank 0 */
+    double energy_error; /* of the last sample's balance over the energy turned over [-] */
+};
+
+void observe_init(struct observe *observe, const struct simulation *sim);
+void observe_clear(struct observe *observe);
+/* Takes a sample: forces are known, spheres have not moved.  Collective. */
+void observe_sample(struct simulation *sim);
+/* Notes this step's largest overlap, the same on all ranks. */
+void observe_overlap(struct simulation *sim, double overlap);
+/* Books sphere i as leaving the run. */
+void observe_removed(struct simulation *sim, int i);
+
+/* All running totals under their names, for checkpoints: n names and the sums' places. */
+struct observe_monitor {
+    char name[64];
+    struct exact_sum *sum;
+};
+/* Lists them; the caller frees *monitors. */
+int observe_monitors(struct simulation *sim, struct observe_monitor **monitors);
+
+#endif

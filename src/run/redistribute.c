@@ -1,0 +1,227 @@
+/*
+ * See redistribute.h.  Allowances: a sphere may go s = max(half buffer, 1.3 |v| K dt) before a search is due,
+ * at most a few radii; the inner list has its own, much smaller ones.  The sum over steps of the
+ * largest |v|/s dt bounds what has been used; when it exceeds 1 the exact largest |x - x_search|/s decides.
+ */
+#include "run/redistribute.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "domain/rcb.h"
+#include "job/job.h"
+#include "model/order.h"
+#include "run/simulation.h"
+
+/* Steps that a search and an inner list should last at present speeds; measured to pay. */
+static const double SEARCH_STEPS = 60.0, INNER_STEPS = 12.0;
+static const double SPEED_MARGIN = 1.3;
+/* Largest allowance and least inner allowance, in radii. */
+static const double ALLOWANCE_MOST = 6.0, INNER_LEAST = 0.01;
+/* Below this exact share a search can wait. */
+static const double SPENT_FINE = 0.7;
+
+static bool is_multiple(int64_t step, int64_t every)
+{
+    return every > 0 && step % every == 0;
+}
+
+bool redistribute_is_due(const struct simulation *sim)
+{
+    const struct job *job = sim->job;
+    return sim->spent.forced || !(sim->spent.search <= 1.0) || is_multiple(sim->step, job->order_every) ||
+           is_multiple(sim->step, job->force.search_every) ||
+           is_multiple(sim->step, job->force.redistribute_every) ||
+           is_multiple(sim->step, job->force.repartition_every);
+}
+
+bool redistribute_inner_is_due(const struct simulation *sim)
+{
+    return !(sim->spent.inner <= 1.0);
+}
+
+static void choose_allowances(struct simulation *sim, int begin, int end)
+{
+    struct spheres *spheres = &sim->spheres;
+    const double horizon = SPEED_MARGIN * SEARCH_STEPS * sim->dt;
+    for (int i = begin; i < end; i++) {
+        const double *v = sphere_velocity(spheres, i);
+        const double most = ALLOWANCE_MOST * sphere_radius(spheres, i);
+        const double reach = horizon * sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        double allowance = reach > sim->half_buffer ? reach : sim->half_buffer;
+        allowance = allowance < most ? allowance : most;
+        spheres->allowance[i] = allowance;
+        spheres->inverse_allowance[i][0] = 1.0 / allowance;
+    }
+}
+
+static void choose_body_allowances(struct simulation *sim)
+{
+    for (int b = 0; b < sim->bodies.n; b++) {
+        const double reach = sim->bodies.list[b].speed_max * SEARCH_STEPS * sim->dt;
+        sim->body_allowance[b] = reach > sim->half_buffer ? reach : sim->half_buffer;
+    }
+}
+
+/* Share of its allowance that the fastest moving body uses in a step. */
+static double bodies_spend(const struct simulation *sim)
+{
+    double most = 0.0;
+    for (int b = 0; b < sim->bodies.n; b++) {
+        const double spent = sim->bodies.list[b].speed_max * sim->dt / sim->body_allowance[b];
+        most = spent > most ? spent : most;
+    }
+    return most;
+}
+
+static void prune(struct simulation *sim, const int *moved)
+{
+    const double least = INNER_LEAST * 4.0 * sim->half_buffer;
+    contact_set_prune(&sim->contacts, &sim->candidates, &sim->spheres, least, INNER_STEPS * sim->dt,
+                      sim->job->force.search == JOB_SEARCH_ALL_PAIRS, moved);
+    sim->spent.inner = 0.0;
+    sim->runtime.prunes++;
+}
+
+void redistribute_inner(struct simulation *sim)
+{
+    runtime_begin(&sim->runtime);
+    prune(sim, NULL);
+    runtime_end(&sim->runtime, RUNTIME_SEARCH);
+}
+
+/* The low level: boxes are cut anew where work has drifted apart, or at first. */
+static void repartition(struct simulation *sim)
+{
+    int64_t *weights = array_allocate((size_t)sim->spheres.n_owned, sizeof *weights);
+    balance_weights(weights, &sim->spheres, sim->job->decomposition.weights, &sim->contacts.now,
+                    &sim->candidates, &sim->facets);
+    rcb_partition(&sim->boxes, sim->comm, &sim->spheres, weights);
+    free(weights);
+    sim->runtime.repartitions++;
+}
+
+static bool has_fixed_grid(const struct simulation *sim)
+{
+    return sim->job->decomposition.fixed[0] > 0;
+}
+
+/* History of contacts that came with spheres from other ranks or from a file. */
+static void restore_arrivals(struct simulation *sim)
+{
+    struct migrate *migrate = &sim->migrate;
+    for (int r = 0; r < migrate->n_contacts; r++) {
+        const struct contact_record *record = &migrate->contacts[r];
+        contact_set_restore(&sim->contacts, &sim->candidates, record,
+                            lookup_find(&migrate->lookup, record->first_id),
+                            lookup_find(&migrate->lookup, record->second_id));
+    }
+    migrate->n_contacts = 0;
+}
+
+static void restore_facets(struct simulation *sim)
+{
+    struct migrate *migrate = &sim->migrate;
+    int *spheres = array_allocate((size_t)migrate->n_facets, sizeof *spheres);
+    for (int r = 0; r < migrate->n_facets; r++) {
+        const int i = lookup_find(&migrate->lookup, migrate->facets[r].id);
+        spheres[r] = i < sim->spheres.n_owned ? i : -1;
+    }
+    facet_contacts_forget(&sim->facets);
+    facet_contacts_restore(&sim->facets, migrate->n_facets, migrate->facets, spheres);
+    free(spheres);
+}
+
+/* Global search with the present owners and ghosts; moved as for contact_set_prune(). */
+static void search(struct simulation *sim, const int *moved)
+{
+    struct spheres *spheres = &sim->spheres;
+    const bool all_pairs = sim->job->force.search == JOB_SEARCH_ALL_PAIRS;
+    spheres_pad(spheres);
+    candidates_search(&sim->candidates, spheres, all_pairs);
+    prune(sim, moved);
+    if (moved != NULL)
+        restore_arrivals(sim);
+    facet_contacts_search(&sim->facets, spheres, &sim->bodies, sim->body_allowance, all_pairs);
+    sections_search(&sim->sections, spheres);
+    for (int i = 0; i < spheres->n_owned; i++) {
+        for (int k = 0; k < 3; k++)
+            spheres->searched_at[i][k] = sphere_position(spheres, i)[k];
+    }
+    sim->spent = (struct simulation_spent){0.0, 0.0, 0.0, false};
+    sim->runtime.searches++;
+}
+
+/* The high level: spheres that crossed move, copies are made anew. */
+static void update_subdomains(struct simulation *sim, bool moves, bool sort_all, const unsigned char *removed,
+                              const struct contact_set *contacts)
+{
+    struct spheres *spheres = &sim->spheres;
+    if (moves) {
+        migrate_spheres(&sim->migrate, sim->comm, &sim->boxes, spheres, contacts, &sim->facets, &sim->materials,
+                        removed, sort_all);
+        sim->runtime.migrated += sim->migrate.n_left;
+        sim->runtime.redistributions++;
+    }
+    choose_allowances(sim, 0, spheres->n_owned);
+    halo_build(&sim->halo, sim->comm, &sim->boxes, spheres, &sim->materials, sim->half_buffer);
+    choose_allowances(sim, spheres->n_owned, spheres->n_all);
+    if (!moves)
+        return;
+    migrate_find_moved(&sim->migrate, spheres);
+    if (sim->migrate.owned_moved)
+        restore_facets(sim);
+}
+
+void redistribute(struct simulation *sim, const unsigned char *removed)
+{
+    const struct job *job = sim->job;
+    runtime_begin(&sim->runtime);
+    const bool renew = is_multiple(sim->step, job->order_every);
+    if (renew)
+        order_renew(&sim->spheres, sim->comm);
+    const bool lost = balance_is_lost(&sim->balance, sim->comm, job->decomposition.imbalance);
+    if (!has_fixed_grid(sim) && (lost || is_multiple(sim->step, job->force.repartition_every)))
+        repartition(sim);
+    const bool moves = sim->comm->n_ranks > 1 || renew || removed != NULL;
+    update_subdomains(sim, moves, renew, removed, &sim->contacts);
+    runtime_end(&sim->runtime, RUNTIME_REDISTRIBUTE);
+    search(sim, moves ? sim->migrate.moved : NULL);
+    runtime_end(&sim->runtime, RUNTIME_SEARCH);
+}
+
+void redistribute_first(struct simulation *sim)
+{
+    choose_body_allowances(sim);
+    if (has_fixed_grid(sim))
+        boxes_set_grid(&sim->boxes, sim->job->decomposition.fixed, sim->job->domain.min, sim->job->domain.max);
+    else
+        repartition(sim);
+    boxes_update(&sim->boxes);
+    update_subdomains(sim, true, true, NULL, NULL);
+    search(sim, sim->migrate.moved);
+}
+
+void redistribute_spend(struct simulation *sim, const double spent[2])
+{
+    const double by_bodies = bodies_spend(sim);
+    sim->spent.bodies += by_bodies;
+    sim->spent.search += spent[0] > by_bodies ? spent[0] : by_bodies;
+    sim->spent.inner += spent[1];
+    if (sim->spent.search <= 1.0)
+        return;
+    double most2 = 0.0;
+    for (int i = 0; i < sim->spheres.n_owned; i++) {
+        const double *x = sphere_position(&sim->spheres, i), *was = sim->spheres.searched_at[i];
+        const double inverse = sim->spheres.inverse_allowance[i][0];
+        const double dx = x[0] - was[0], dy = x[1] - was[1], dz = x[2] - was[2];
+        const double share2 = (dx * dx + dy * dy + dz * dz) * inverse * inverse;
+        most2 = share2 > most2 ? share2 : most2;
+    }
+    comm_max(sim->comm, &most2, 1);
+    const double by_spheres = sqrt(most2);
+    const double most = by_spheres > sim->spent.bodies ? by_spheres : sim->spent.bodies;
+    if (most < SPENT_FINE)
+        sim->spent.search = most;
+}

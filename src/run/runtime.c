@@ -1,0 +1,130 @@
+/* See runtime.h.  Means are taken from integers, as all sums over ranks. */
+#include "run/runtime.h"
+
+#include <stdio.h>
+#include <unistd.h>
+
+#include "base/comm.h"
+#include "base/report.h"
+#include "base/timer.h"
+
+static const char *const PHASE_NAMES[RUNTIME_N_PHASES] = {
+    "bodies", "facets", "pairs",        "integrate", "halo",
+    "watch",  "search", "redistribute", "sample",    "checkpoint",
+};
+
+enum { VALUES_MAX = 128, NANOSECONDS = 1000000000 };
+
+static void add_columns(struct series *table)
+{
+    series_add_column(table, "1", "steps done when the row was made", "step");
+    series_add_column(table, "s", "simulated time", "time");
+    series_add_column(table, "s", "wall time since the row before", "wall");
+    series_add_column(table, "1", "ranks", "ranks");
+    series_add_column(table, "1", "steps since the row before", "steps");
+    series_add_column(table, "1", "spheres in the run", "n_spheres");
+    series_add_column(table, "1", "spheres times steps since the row before", "particle_steps");
+    for (int p = 0; p < RUNTIME_N_PHASES; p++) {
+        series_add_column(table, "s", "time in this phase, least over ranks", "%s.min", PHASE_NAMES[p]);
+        series_add_column(table, "s", "time in this phase, mean over ranks", "%s.mean", PHASE_NAMES[p]);
+        series_add_column(table, "s", "time in this phase, largest over ranks", "%s.max", PHASE_NAMES[p]);
+    }
+    series_add_column(table, "1", "searches since the row before", "searches");
+    series_add_column(table, "1", "renewals of the inner list", "prunes");
+    series_add_column(table, "1", "redistributions that moved spheres (high level)", "redistributions");
+    series_add_column(table, "1", "repartitions (low level)", "repartitions");
+    series_add_column(table, "1", "spheres that changed rank", "migrated");
+    series_add_column(table, "1", "largest over mean working time at the last verdict", "imbalance");
+    static const char *const sizes[] = {"owned", "ghosts", "internal", "interfacial", "candidates", "contacts"};
+    for (int k = 0; k < 6; k++) {
+        series_add_column(table, "1", "number a rank, least", "%s.min", sizes[k]);
+        series_add_column(table, "1", "number a rank, mean", "%s.mean", sizes[k]);
+        series_add_column(table, "1", "number a rank, largest", "%s.max", sizes[k]);
+    }
+    series_add_column(table, "bytes", "resident memory a rank, least", "memory.min");
+    series_add_column(table, "bytes", "resident memory a rank, mean", "memory.mean");
+    series_add_column(table, "bytes", "resident memory a rank, largest", "memory.max");
+}
+
+void runtime_init(struct runtime *runtime, int64_t step)
+{
+    *runtime = (struct runtime){.row_step = step, .imbalance = 1.0};
+    runtime->started = runtime->row_started = runtime->mark = timer_now();
+    series_init(&runtime->table, "runtime");
+    add_columns(&runtime->table);
+}
+
+void runtime_clear(struct runtime *runtime)
+{
+    series_clear(&runtime->table);
+}
+
+void runtime_begin(struct runtime *runtime)
+{
+    runtime->mark = timer_now();
+}
+
+void runtime_end(struct runtime *runtime, enum runtime_phase phase)
+{
+    const double now = timer_now();
+    runtime->phase[phase] += now - runtime->mark;
+    runtime->mark = now;
+}
+
+double runtime_memory(void)
+{
+    long pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (file == NULL)
+        return 0.0;
+    const int n = fscanf(file, "%*s %ld", &pages);
+    fclose(file);
+    return n == 1 ? (double)pages * (double)sysconf(_SC_PAGESIZE) : 0.0;
+}
+
+/* Appends least, mean and largest of an integer over ranks. */
+static void spread(const struct comm *comm, double *row, int *n, int64_t value, double unit)
+{
+    int64_t sum = value, extremes[2] = {value, -value};
+    comm_sum_int(comm, &sum, 1);
+    comm_max_int(comm, extremes, 2);
+    row[(*n)++] = (double)-extremes[1] * unit;
+    row[(*n)++] = (double)sum * unit / comm->n_ranks;
+    row[(*n)++] = (double)extremes[0] * unit;
+}
+
+void runtime_row(struct runtime *runtime, const struct comm *comm, int64_t step, double time,
+                 const struct runtime_sizes *sizes)
+{
+    const double now = timer_now();
+    double row[VALUES_MAX] = {(double)step,
+                              time,
+                              now - runtime->row_started,
+                              comm->n_ranks,
+                              (double)(step - runtime->row_step),
+                              (double)sizes->n_spheres,
+                              (double)runtime->particle_steps};
+    int n = 7;
+    for (int p = 0; p < RUNTIME_N_PHASES; p++)
+        spread(comm, row, &n, (int64_t)(runtime->phase[p] * NANOSECONDS), 1.0 / NANOSECONDS);
+    int64_t migrated = runtime->migrated;
+    comm_sum_int(comm, &migrated, 1);
+    const double counts[] = {(double)runtime->searches,     (double)runtime->prunes, (double)runtime->redistributions,
+                             (double)runtime->repartitions, (double)migrated,        runtime->imbalance};
+    for (int k = 0; k < 6; k++)
+        row[n++] = counts[k];
+    const int64_t numbers[] = {sizes->n_owned,       sizes->n_ghosts,     sizes->n_internal,
+                               sizes->n_interfacial, sizes->n_candidates, sizes->n_contacts};
+    for (int k = 0; k < 6; k++)
+        spread(comm, row, &n, numbers[k], 1.0);
+    spread(comm, row, &n, (int64_t)runtime_memory(), 1.0);
+    CHECK(n == runtime->table.n_columns, "%d values for %d columns", n, runtime->table.n_columns);
+    if (comm->rank == 0)
+        series_add_row(&runtime->table, row);
+    for (int p = 0; p < RUNTIME_N_PHASES; p++)
+        runtime->phase[p] = 0.0;
+    runtime->searches = runtime->prunes = runtime->redistributions = runtime->repartitions = 0;
+    runtime->migrated = runtime->particle_steps = 0;
+    runtime->row_step = step;
+    runtime->row_started = now;
+}

@@ -1,0 +1,289 @@
+/* See simulation.h.  A new scene and a checkpoint differ only in where the spheres come from: either way
+ * each rank begins with a slice of the ids, and the first redistribution sends them to their owners. */
+#include "run/simulation.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/report.h"
+#include "job/job.h"
+#include "model/order.h"
+#include "model/packing.h"
+#include "physics/critical_step.h"
+#include "run/redistribute.h"
+#include "store/checkpoint.h"
+#include "store/run_folder.h"
+
+double simulation_choose_step(const struct job *job, double *critical)
+{
+    double least = 1e300;
+    for (int g = 0; g < job->n_spheres; g++) {
+        struct packing packing;
+        char *why = NULL;
+        if (!packing_open(&packing, job, g, &why)) {
+            free(why); /* said where the scene is built */
+            continue;
+        }
+        const int64_t n = packing.rows != NULL ? packing.n : 1;
+        for (int64_t k = 0; k < n; k++) {
+            const struct packing_sphere sphere = packing_get(&packing, k);
+            const struct job_material *m = &job->materials[sphere.material];
+            const double step = critical_step_rayleigh(sphere.radius, m->density, m->young, m->poisson);
+            least = step < least ? step : least;
+        }
+        packing_close(&packing);
+    }
+    *critical = least;
+    if (job->time.step > 0.0 || !(least < 1e299))
+        return job->time.step;
+    return critical_step_round_down(job->time.safety * least);
+}
+
+static bool one_material(const struct simulation *sim)
+{
+    int64_t extremes[2] = {-1, -1000000}; /* largest, and minus the least, material */
+    for (int i = 0; i < sim->spheres.n_owned; i++) {
+        const int64_t material = sim->spheres.material[i];
+        extremes[0] = material > extremes[0] ? material : extremes[0];
+        extremes[1] = -material > extremes[1] ? -material : extremes[1];
+    }
+    comm_max_int(sim->comm, extremes, 2);
+    return extremes[0] == -extremes[1];
+}
+
+/* Half of the buffer zone's width: by default half of the mean radius is the width (the paper's). */
+static double choose_half_buffer(const struct simulation *sim)
+{
+    if (sim->job->decomposition.buffer > 0.0)
+        return 0.5 * sim->job->decomposition.buffer;
+    struct exact_sum sums[2] = {{{0}, 0, 0}};
+    for (int i = 0; i < sim->spheres.n_owned; i++) {
+        exact_sum_add(&sums[0], sphere_radius(&sim->spheres, i));
+        exact_sum_add(&sums[1], 1.0);
+    }
+    exact_sum_reduce(sim->comm, sums, 2);
+    const double mean = exact_sum_value(&sums[0]) / exact_sum_value(&sums[1]);
+    return 0.25 * mean;
+}
+
+/* All that does not depend on where the spheres come from. */
+static void begin(struct simulation *sim, const struct comm *comm, const struct job *job)
+{
+    *sim = (struct simulation){.comm = comm, .job = job};
+    sim->dt = job->time.step;
+    sim->n_steps = (int64_t)(job->time.end / sim->dt + 0.5);
+    sim->sample_every = (int64_t)(job->output.series_every / sim->dt + 0.5);
+    materials_build(&sim->materials, job);
+    bodies_build(&sim->bodies, job);
+    spheres_init(&sim->spheres);
+    facet_contacts_init(&sim->facets, sim->bodies.n);
+    sim->body_allowance = array_allocate((size_t)sim->bodies.n, sizeof *sim->body_allowance);
+    boxes_init(&sim->boxes, comm->n_ranks);
+    halo_init(&sim->halo, comm);
+    migrate_init(&sim->migrate, comm);
+    sections_init(&sim->sections, job);
+    observe_init(&sim->observe, sim);
+    watch_init(&sim->watch, job->checkpoint.every_wall);
+}
+
+/* Spheres are here in some order: complete them, choose kernels, distribute and search. */
+static void finish(struct simulation *sim, enum pair_kernel_isa isa)
+{
+    for (int i = 0; i < sim->spheres.n_owned; i++)
+        sphere_complete(&sim->spheres, i, &sim->materials);
+    sim->n_spheres = sim->spheres.n_owned;
+    comm_sum_int(sim->comm, &sim->n_spheres, 1);
+    sim->kernel = pair_kernel_choose(isa, one_material(sim), sim->job->energy_ledger);
+    sim->half_buffer = choose_half_buffer(sim);
+    runtime_init(&sim->runtime, sim->step);
+    bodies_place(&sim->bodies, sim->step, sim->dt);
+    redistribute_first(sim);
+    runtime_begin(&sim->runtime);
+}
+
+static void add_sphere(struct simulation *sim, int64_t id, int group, const struct packing_sphere *new)
+{
+    struct spheres *spheres = &sim->spheres;
+    const int i = spheres->n_owned++;
+    spheres_reserve(spheres, spheres->n_owned);
+    spheres->motion[i] = (struct sphere_row){{new->position.x, new->position.y, new->position.z, new->radius,
+                                              new->velocity.x, new->velocity.y, new->velocity.z, new->radius}};
+    spheres->spin[i] = (struct sphere_row){
+        {0.0, 0.0, 0.0, 0.0, new->angular_velocity.x, new->angular_velocity.y, new->angular_velocity.z, 0.0}};
+    spheres->force[i] = (struct sphere_row){{0.0}};
+    spheres->id[i] = id;
+    spheres->material[i] = new->material;
+    spheres->group[i] = group;
+    spheres->dissipated_friction[i] = 0.0;
+    spheres->dissipated_damping[i] = 0.0;
+    spheres->dissipated_tangential[i] = 0.0;
+    sections_begin(&sim->sections, spheres, i);
+}
+
+void simulation_create(struct simulation *sim, const struct comm *comm, const struct job *job,
+                       enum pair_kernel_isa isa)
+{
+    begin(sim, comm, job);
+    for (int g = 0; g < job->n_spheres; g++) {
+        struct packing packing;
+        char *why = NULL;
+        CHECK(packing_open(&packing, job, g, &why), "%s", why);
+        const int64_t first = packing.n * comm->rank / comm->n_ranks;
+        const int64_t end = packing.n * (comm->rank + 1) / comm->n_ranks;
+        for (int64_t k = first; k < end; k++) {
+            const struct packing_sphere sphere = packing_get(&packing, k);
+            add_sphere(sim, sim->next_id + k, g, &sphere);
+        }
+        sim->next_id += packing.n;
+        packing_close(&packing);
+    }
+    sim->spheres.n_all = sim->spheres.n_owned;
+    order_renew(&sim->spheres, comm);
+    finish(sim, isa);
+}
+
+/* Totals from the file: rank 0 holds them, the others hold nothing yet. */
+static int restore_monitors(struct simulation *sim, const struct checkpoint *checkpoint)
+{
+    struct observe_monitor *monitors;
+    const int n = observe_monitors(sim, &monitors);
+    int status = REPORT_FINISHED;
+    for (int m = 0; m < n; m++) {
+        int found = -1;
+        for (int c = 0; c < checkpoint->n_monitors; c++)
+            found = strcmp(checkpoint->monitors[c].name, monitors[m].name) == 0 ? c : found;
+        if (found >= 0)
+            *monitors[m].sum = checkpoint->monitors[found].sum;
+        else
+            status = REPORT_STORAGE;
+    }
+    free(monitors);
+    return status;
+}
+
+int simulation_restart(struct simulation *sim, const struct comm *comm, const struct job *job,
+                       enum pair_kernel_isa isa, const char *checkpoint_path)
+{
+    begin(sim, comm, job);
+    struct checkpoint checkpoint = {.spheres = &sim->spheres};
+    int status = checkpoint_read(comm, checkpoint_path, &checkpoint);
+    if (status == REPORT_FINISHED && restore_monitors(sim, &checkpoint) != REPORT_FINISHED) {
+        report_error("%s was written by a job with other bodies or sections; use the job it belongs to",
+                     checkpoint_path);
+        status = REPORT_BAD_INPUT;
+    }
+    if (status != REPORT_FINISHED) {
+        checkpoint_clear(&checkpoint);
+        simulation_destroy(sim);
+        return status;
+    }
+    sim->step = checkpoint.step;
+    sim->next_id = checkpoint.next_id;
+    sim->spheres.n_all = sim->spheres.n_owned;
+    sim->migrate.n_contacts = sim->migrate.contact_capacity = checkpoint.n_contacts;
+    sim->migrate.contacts = checkpoint.contacts;
+    sim->migrate.n_facets = sim->migrate.facet_capacity = checkpoint.n_facet_contacts;
+    sim->migrate.facets = checkpoint.facet_contacts;
+    checkpoint.contacts = NULL;
+    checkpoint.facet_contacts = NULL;
+    checkpoint_clear(&checkpoint);
+    finish(sim, isa);
+    return REPORT_FINISHED;
+}
+
+void simulation_destroy(struct simulation *sim)
+{
+    materials_clear(&sim->materials);
+    bodies_clear(&sim->bodies);
+    spheres_clear(&sim->spheres);
+    candidates_clear(&sim->candidates);
+    contact_set_clear(&sim->contacts);
+    facet_contacts_clear(&sim->facets);
+    free(sim->body_allowance);
+    boxes_clear(&sim->boxes);
+    halo_clear(&sim->halo);
+    migrate_clear(&sim->migrate);
+    sections_clear(&sim->sections);
+    observe_clear(&sim->observe);
+    runtime_clear(&sim->runtime);
+}
+
+/* --------------------------------------------------------------------------------------- saving */
+
+static int write_series(struct simulation *sim, const struct run_folder *folder)
+{
+    if (sim->comm->rank != 0)
+        return REPORT_FINISHED;
+    char *path = run_folder_series_path(folder, sim->step);
+    const struct series *const tables[] = {&sim->observe.table, &sim->runtime.table};
+    const int status = series_write_segment(path, sim->job->title, 2, tables);
+    if (status == REPORT_FINISHED) {
+        series_clear_rows(&sim->observe.table);
+        series_clear_rows(&sim->runtime.table);
+    }
+    free(path);
+    return status;
+}
+
+static struct runtime_sizes sizes_now(const struct simulation *sim)
+{
+    return (struct runtime_sizes){
+        .n_owned = sim->spheres.n_owned,
+        .n_ghosts = sim->spheres.n_all - sim->spheres.n_owned,
+        .n_internal = sim->halo.n_internal,
+        .n_interfacial = sim->halo.n_interfacial,
+        .n_candidates = sim->candidates.n,
+        .n_contacts = sim->contacts.now.n,
+        .n_spheres = sim->n_spheres,
+    };
+}
+
+static int write_checkpoint(struct simulation *sim, const struct run_folder *folder, const char *job_text)
+{
+    struct contact_record *contacts = NULL;
+    struct facet_contact_record *facets = NULL;
+    struct observe_monitor *totals;
+    int capacity = 0;
+    struct checkpoint checkpoint = {.step = sim->step, .dt = sim->dt, .next_id = sim->next_id, .spheres = &sim->spheres};
+    checkpoint.title = array_string(sim->job->title);
+    checkpoint.job_text = array_string(job_text);
+    checkpoint.n_contacts = contact_set_records(&sim->contacts, &sim->spheres, NULL, &contacts, &capacity);
+    checkpoint.contacts = contacts;
+    checkpoint.n_facet_contacts = facet_contacts_records(&sim->facets, &sim->spheres, &facets);
+    checkpoint.facet_contacts = facets;
+    checkpoint.n_monitors = observe_monitors(sim, &totals);
+    checkpoint.monitors = array_allocate((size_t)checkpoint.n_monitors, sizeof *checkpoint.monitors);
+    for (int m = 0; m < checkpoint.n_monitors; m++) {
+        memcpy(checkpoint.monitors[m].name, totals[m].name, sizeof totals[m].name);
+        checkpoint.monitors[m].sum = *totals[m].sum;
+    }
+    free(totals);
+    char *path = run_folder_checkpoint_path(folder, sim->step);
+    const int status = checkpoint_write(sim->comm, path, &checkpoint);
+    free(path);
+    checkpoint_clear(&checkpoint);
+    return status;
+}
+
+int simulation_save_series(struct simulation *sim, const struct run_folder *folder)
+{
+    const struct runtime_sizes sizes = sizes_now(sim);
+    runtime_row(&sim->runtime, sim->comm, sim->step, (double)sim->step * sim->dt, &sizes);
+    return comm_agree(sim->comm, write_series(sim, folder));
+}
+
+int simulation_save(struct simulation *sim, const struct run_folder *folder, const char *job_text)
+{
+    runtime_begin(&sim->runtime);
+    /* Series first: a checkpoint without its rows would leave a gap, rows without a checkpoint are set
+     * aside at the next start. */
+    int status = simulation_save_series(sim, folder);
+    if (status == REPORT_FINISHED)
+        status = write_checkpoint(sim, folder, job_text);
+    if (status == REPORT_FINISHED && sim->comm->rank == 0)
+        run_folder_prune(folder, sim->job->checkpoint.keep);
+    runtime_end(&sim->runtime, RUNTIME_CHECKPOINT);
+    return status;
+}

@@ -1,0 +1,91 @@
+/*
+ * A simulation on one rank: all that the step works on.  step.h moves it; redistribute.h finds who
+ * touches and who owns; watch.h looks for failure; observe.h reports.
+ */
+#ifndef TREMIE_RUN_SIMULATION_H
+#define TREMIE_RUN_SIMULATION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/comm.h"
+#include "contact/candidates.h"
+#include "contact/contact_set.h"
+#include "contact/facet_contact.h"
+#include "contact/pair_kernel.h"
+#include "domain/balance.h"
+#include "domain/boxes.h"
+#include "domain/halo.h"
+#include "domain/migrate.h"
+#include "model/body.h"
+#include "model/material.h"
+#include "model/sphere.h"
+#include "run/observe.h"
+#include "run/runtime.h"
+#include "run/sections.h"
+#include "run/watch.h"
+
+struct job;
+struct run_folder;
+
+/* Ages of the lists, in shares of what they allow: 1 means stale. */
+struct simulation_spent {
+    double search; /* of the candidates' allowances */
+    double inner;  /* of the inner list's */
+    double bodies; /* of the bodies', since the last search */
+    bool forced;   /* something else asks for a search */
+};
+
+struct simulation {
+    const struct comm *comm;
+    const struct job *job;
+    double dt;            /* [s] */
+    int64_t step;         /* steps done: places are those at step * dt */
+    int64_t n_steps;      /* at which the job ends */
+    int64_t sample_every; /* steps between samples; 0: none */
+    int64_t next_id;
+    int64_t n_spheres; /* in the run, on all ranks */
+
+    struct materials materials;
+    struct bodies bodies;
+    struct spheres spheres;
+
+    struct candidates candidates;
+    struct contact_set contacts;
+    struct facet_contacts facets;
+    double *body_allowance; /* how far each body's surface may move before a search is due [m] */
+    struct pair_kernel kernel;
+    double overlap_max;     /* largest overlap over radius in the last step, of pairs, on this rank */
+
+    struct boxes boxes;
+    struct halo halo;
+    struct migrate migrate;
+    struct balance balance;
+    double half_buffer;     /* least allowance of a search [m] */
+    struct simulation_spent spent;
+
+    struct sections sections;
+    struct observe observe;
+    struct watch watch;
+    struct runtime runtime;
+};
+
+/* Builds the scene of the job, at step 0, distributed and searched.  Collective. */
+void simulation_create(struct simulation *sim, const struct comm *comm, const struct job *job,
+                       enum pair_kernel_isa isa);
+/* The same from a checkpoint.  Returns a REPORT_ status, the reason said.  Collective. */
+int simulation_restart(struct simulation *sim, const struct comm *comm, const struct job *job,
+                       enum pair_kernel_isa isa, const char *checkpoint_path);
+void simulation_destroy(struct simulation *sim);
+
+/* Writes series and checkpoint of the present step into the folder and drops old checkpoints.  Returns a
+ * REPORT_ status.  Collective. */
+int simulation_save(struct simulation *sim, const struct run_folder *folder, const char *job_text);
+/* The rows so far alone.  Collective. */
+int simulation_save_series(struct simulation *sim, const struct run_folder *folder);
+
+/* The step that the job asks for, or `safety` times the critical step of the scene [s], and, for
+ * reports, that critical step.  Depends on the job alone; steps read from CSV files count. */
+double simulation_choose_step(const struct job *job, double *critical);
+
+#endif

@@ -1,0 +1,137 @@
+/*
+ * The time step.  Places are those at n, velocities those at n - 1/2 when a step begins:
+ *
+ *   1 prescribed motion of the bodies                             model/body.h
+ *   2 if stale: redistribute (both levels), global search         redistribute.h
+ *   3 local search and contact laws of spheres with facets        contact/facet_contact.h
+ *   4 contact laws of pairs of spheres, with history              contact/pair_kernel.h
+ *   5 at sampling steps: energies, forces on bodies, sections     observe.h
+ *   6 gravity, integration of owned spheres to n + 1              physics/integrate.h
+ *   7 passages through sections                                   sections.h
+ *   8 refresh of the ghosts                                       domain/halo.h
+ *   9 the one reduction: motion against the buffer, overlap, signals, clock   watch.h
+ */
+#include "run/step.h"
+
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "base/timer.h"
+#include "job/job.h"
+#include "physics/integrate.h"
+#include "run/redistribute.h"
+#include "run/simulation.h"
+
+/* Steps between looks for spheres that left the domain: when they are removed is part of the result. */
+enum { LEAVERS_EVERY = 64 };
+
+static void remove_leavers(struct simulation *sim)
+{
+    if (sim->job->domain.leavers == JOB_LEAVERS_IGNORE || sim->step % LEAVERS_EVERY != 0)
+        return;
+    unsigned char *removed = array_allocate((size_t)sim->spheres.n_owned, 1);
+    const int n = watch_leavers(&sim->watch, sim, removed);
+    if (n > 0) {
+        for (int i = 0; i < sim->spheres.n_owned; i++) {
+            if (removed[i])
+                observe_removed(sim, i);
+        }
+        sim->n_spheres -= n;
+        redistribute(sim, removed);
+    }
+    free(removed);
+}
+
+static void pair_forces(struct simulation *sim)
+{
+    struct contact_list *list = &sim->contacts.now;
+    struct pair_kernel_work work = {
+        .n_padded = list->n_padded,
+        .first = list->first,
+        .second = list->second,
+        .motion = sim->spheres.motion,
+        .spin = sim->spheres.spin,
+        .force = sim->spheres.force,
+        .material = sim->spheres.material,
+        .n_materials = sim->materials.n,
+        .pairs = sim->materials.pairs,
+        .dissipated_tangential = sim->spheres.dissipated_tangential,
+        .dt = sim->dt,
+    };
+    for (int l = 0; l < CONTACT_LANES; l++)
+        work.history[l] = list->history[l];
+    sim->kernel.apply(&work);
+    sim->overlap_max = work.overlap_max;
+}
+
+static void integrate(struct simulation *sim, double spent[2], bool *bad)
+{
+    struct spheres *spheres = &sim->spheres;
+    const struct vec3 g = sim->job->gravity;
+    struct integrate_work work = {
+        .n = spheres->n_owned,
+        .motion = spheres->motion,
+        .spin = spheres->spin,
+        .force = spheres->force,
+        .dissipated_friction = spheres->dissipated_friction,
+        .dissipated_damping = spheres->dissipated_damping,
+        .inverse_allowance = spheres->inverse_allowance,
+        .dt = sim->dt,
+        .gravity = {g.x, g.y, g.z},
+        .damping = sim->job->damping,
+        .ledger = sim->job->energy_ledger,
+    };
+    integrate_spheres(&work);
+    for (int i = spheres->n_owned; i < spheres->n_all; i++)
+        spheres->force[i] = (struct sphere_row){{0.0}}; /* what ghosts feel is their owner's business */
+    spent[0] = work.spent[0];
+    spent[1] = work.spent[1];
+    *bad = work.bad;
+}
+
+void step_forces(struct simulation *sim)
+{
+    struct runtime *runtime = &sim->runtime;
+    runtime_begin(runtime);
+    bodies_place(&sim->bodies, sim->step, sim->dt);
+    runtime_end(runtime, RUNTIME_BODIES);
+    remove_leavers(sim);
+    if (redistribute_is_due(sim)) {
+        redistribute(sim, NULL);
+        watch_motion(&sim->watch, sim);
+    } else if (redistribute_inner_is_due(sim)) {
+        redistribute_inner(sim);
+    }
+    runtime_begin(runtime);
+    const double began = timer_now();
+    facet_contacts_apply(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials, sim->dt,
+                         sim->job->energy_ledger);
+    runtime_end(runtime, RUNTIME_FACETS);
+    pair_forces(sim);
+    runtime_end(runtime, RUNTIME_PAIRS);
+    sim->balance.busy += timer_now() - began;
+    if (sim->sample_every > 0 && sim->step % sim->sample_every == 0) {
+        observe_sample(sim);
+        watch_energy(&sim->watch, sim);
+        runtime_end(runtime, RUNTIME_SAMPLE);
+    }
+}
+
+void step(struct simulation *sim)
+{
+    struct runtime *runtime = &sim->runtime;
+    double spent[2];
+    bool bad;
+    step_forces(sim);
+    integrate(sim, spent, &bad);
+    sim->step++;
+    sections_pass(&sim->sections, &sim->spheres);
+    runtime_end(runtime, RUNTIME_INTEGRATE);
+    halo_refresh(&sim->halo, sim->comm, &sim->spheres);
+    runtime_end(runtime, RUNTIME_HALO);
+    watch_agree(&sim->watch, sim, spent, bad);
+    observe_overlap(sim, sim->watch.overlap);
+    redistribute_spend(sim, spent);
+    runtime->particle_steps += sim->n_spheres;
+    runtime_end(runtime, RUNTIME_WATCH);
+}
