@@ -82,10 +82,9 @@ struct contact_law_work {
     lanes taken;                  /* what turning took off [N] */
     lanes scale;                  /* radius over the last one where it shrinks, else 1 */
     lanes stretch;                /* tangential stiffness x dt [N s/m] */
-    lanes trial_squared;          /* of the tangential spring before Coulomb [N2] */
+    lanes c_t;                    /* tangential dashpot [kg/s] */
     lanes_mask sliding;
-    lanes ratio; /* what Coulomb leaves of the spring */
-    lanes c_t;   /* tangential dashpot, 0 where it slides [kg/s] */
+    lanes share; /* of the tangential force that Coulomb leaves */
     /* With the ledger on: products of turned and v_t. */
     lanes turned_turned, turned_v, v_v;
 };
@@ -104,7 +103,7 @@ LANES_INLINE void contact_law_push(struct contact_law_work *work,
     work->f_elastic = pair->normal * work->radius * meeting->overlap; /* (1.5) */
     const lanes f_n = work->f_elastic - c_n * work->v_now;
     result->normal = lanes_keep(f_n > lanes_all(0.0), f_n); /* (1.8) */
-    work->c_t = pair->damping_ratio * c_n;                  /* (1.13) */
+    work->c_t = pair->damping_ratio * c_n;
 }
 
 /* Mindlin's spring, limited by Coulomb, and the dashpot beside it. */
@@ -117,7 +116,7 @@ LANES_INLINE void contact_law_grip(struct contact_law_work *work,
     const lanes *n = meeting->normal, one = lanes_all(1.0);
     const lanes radius_old = history[CONTACT_LAW_RADIUS];
     const lanes limit = pair->friction * result->normal; /* [N] */
-    lanes h[3];
+    lanes h[3], g[3];                                    /* spring; spring and dashpot [N] */
 
     work->inverse_old = one / radius_old;
     work->scale = lanes_where(work->radius < radius_old, work->radius * work->inverse_old, one);
@@ -128,30 +127,31 @@ LANES_INLINE void contact_law_grip(struct contact_law_work *work,
         work->turned[x] = history[x] - work->taken * n[x];                   /* (1.10) */
         h[x] = work->scale * work->turned[x] + work->stretch * work->v_t[x]; /* (1.11) */
         h[x] = lanes_keep(work->touching, h[x]);
+        g[x] = h[x] + work->c_t * work->v_t[x]; /* (1.12) */
     }
-
     if (ledger) {
         work->turned_turned = contact_law_dot(work->turned, work->turned);
         work->turned_v = contact_law_dot(work->turned, work->v_t);
         work->v_v = contact_law_dot(work->v_t, work->v_t);
     }
 
-    /* The spring keeps no more than friction can hold, and what slides has no dashpot.  Without a
-     * sliding lane nothing would change, so skipping it changes no bit. */
-    work->trial_squared = contact_law_dot(h, h);
-    work->sliding = work->trial_squared > limit * limit;
-    work->ratio = one;
+    /* Spring and dashpot exert no more than friction can hold.  Where no lane slides nothing would
+     * change, so skipping it changes no bit. */
+    const lanes g_squared = contact_law_dot(g, g);
+    work->sliding = g_squared > limit * limit;
+    work->share = one;
     if (lanes_any(work->sliding)) {
-        const lanes ratio = limit / lanes_sqrt(work->trial_squared);
-        work->ratio = lanes_where(work->sliding, ratio, one); /* (1.12) */
-        work->c_t = lanes_where(work->sliding, lanes_all(0.0), work->c_t);
+        const lanes share = limit / lanes_sqrt(g_squared);
+        work->share = lanes_where(work->sliding, share, one);
 #pragma GCC unroll 3
-        for (int x = 0; x < 3; x++)
-            h[x] *= work->ratio;
+        for (int x = 0; x < 3; x++) {
+            h[x] *= work->share; /* (1.13) */
+            g[x] *= work->share;
+        }
     }
 #pragma GCC unroll 3
     for (int x = 0; x < 3; x++) {
-        result->tangential[x] = -h[x] - work->c_t * work->v_t[x]; /* (1.13) */
+        result->tangential[x] = -g[x];
         history[CONTACT_LAW_FORCE + x] = h[x];
     }
 }
@@ -164,27 +164,32 @@ LANES_INLINE void contact_law_ledger(const struct contact_law_work *work,
 {
     const lanes one = lanes_all(1.0), softness = one / pair->tangential; /* [1/Pa] */
     const lanes inverse_a = one / work->radius; /* infinite where they do not touch [1/m] */
-    const lanes kept_kept = work->scale * work->scale * work->turned_turned;
-    const lanes kept_v = work->scale * work->turned_v;
+    /* Products of the spring's force, scaled (h1) and stretched (h2), and of v_t. */
+    const lanes h1_h1 = work->scale * work->scale * work->turned_turned;
+    const lanes h1_v = work->scale * work->turned_v;
+    const lanes h1_h2 = h1_h1 + work->stretch * h1_v;
+    const lanes h2_v = h1_v + work->stretch * work->v_v;
+    const lanes h2_h2 = h1_h2 + work->stretch * h2_v;
 
-    /* Sliding: the mean of the spring's force before and after, times how far it slid. */
-    const lanes both = kept_kept + work->stretch * kept_v + work->ratio * work->trial_squared;
-    const lanes slid = 0.5 * softness * inverse_a * both * (one - work->ratio);
-    result->lost_friction = lanes_keep(work->sliding, slid); /* (1.16) */
-
-    /* Dashpots.  The tangential velocity comes from the half step to the step by what this
-     * contact's own force does to it: 7/4 dt / m* f. */
+    /* The spring that slides: the mean of its force before and after, times how far. */
+    const lanes slid =
+        0.5 * softness * inverse_a * (h1_h2 + work->share * h2_h2) * (one - work->share);
+    /* The dashpot.  Velocity comes from the half step to the step by what this contact's own force
+     * does to it: 7/4 dt / m* f. */
     const lanes half = 1.75 * meeting->inverse_mass * dt;
-    const lanes v_v_now = work->v_v - half * (kept_v + (work->stretch + work->c_t) * work->v_v);
-    const lanes normal_power = (work->f_elastic - result->normal) * work->v_now; /* [W] */
-    result->lost_damping = (normal_power + work->c_t * v_v_now) * dt;            /* (1.17) */
+    const lanes g_v = work->share * (h2_v + work->c_t * work->v_v);
+    const lanes dashed = work->share * work->c_t * (work->v_v - half * g_v) * dt;
+    const lanes pushed = (work->f_elastic - result->normal) * work->v_now * dt;
+    result->lost_friction = lanes_keep(work->sliding, slid + dashed); /* (1.16) */
+    result->lost_damping =
+        pushed + lanes_where(work->sliding, lanes_all(0.0), dashed); /* (1.17) */
 
     /* The memory turned, the stiffness changed, and work was done against the force before. */
     const lanes turned = work->turned_turned + work->taken * work->taken;
-    const lanes after = lanes_keep(work->touching, kept_kept * inverse_a);
+    const lanes after = lanes_keep(work->touching, h1_h1 * inverse_a);
     const lanes dropped =
         lanes_keep(work->touched, softness * (turned * work->inverse_old - after));
-    result->lost_law = 0.5 * (dropped + (work->turned_v - kept_v) * dt); /* (1.18) */
+    result->lost_law = 0.5 * (dropped + (work->turned_v - h1_v) * dt); /* (1.18) */
 }
 
 /*
