@@ -35,13 +35,14 @@ struct stand {
     double offset, distance;
 };
 
-static struct stand fit_across(const struct camera *camera, struct vec3 across, double tangent, int n,
-                               const struct camera_ball *balls)
+static struct stand fit_across(const struct camera *camera, struct vec3 across, double tangent,
+                               int n, const struct camera_ball *balls)
 {
     const double per_radius = sqrt(1.0 + tangent * tangent);
     double most = -INFINITY, least = -INFINITY;
     for (int i = 0; i < n; i++) {
-        const double x = vec3_dot(balls[i].centre, across), z = vec3_dot(balls[i].centre, camera->ahead);
+        const double x = vec3_dot(balls[i].centre, across),
+                     z = vec3_dot(balls[i].centre, camera->ahead);
         const double spare = balls[i].radius * per_radius - z * tangent;
         most = x + spare > most ? x + spare : most;
         least = -x + spare > least ? -x + spare : least;
@@ -49,16 +50,19 @@ static struct stand fit_across(const struct camera *camera, struct vec3 across, 
     return (struct stand){0.5 * (most - least), 0.5 * (most + least) / tangent};
 }
 
-struct camera camera_fit(double azimuth, double elevation, double zoom, struct camera_frame frame, int n,
-                         const struct camera_ball *balls)
+struct camera camera_fit(double azimuth, double elevation, double zoom,
+                         struct camera_frame frame, int n, const struct camera_ball *balls)
 {
     const double width = frame.right - frame.left, height = frame.bottom - frame.top;
     const double larger = width > height ? width : height;
-    struct camera camera = {.centre = {0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom)},
-                            .focal = 0.5 * larger / tan(0.5 * FIELD_OF_VIEW * PI / 180.0)};
+    struct camera camera = {
+        .centre = {0.5 * (frame.left + frame.right), 0.5 * (frame.top + frame.bottom)},
+        .focal = 0.5 * larger / tan(0.5 * FIELD_OF_VIEW * PI / 180.0)};
     orient(&camera, azimuth, elevation);
-    const struct stand x = fit_across(&camera, camera.right, 0.5 * width / camera.focal, n, balls);
-    const struct stand y = fit_across(&camera, camera.up, 0.5 * height / camera.focal, n, balls);
+    const struct stand x =
+        fit_across(&camera, camera.right, 0.5 * width / camera.focal, n, balls);
+    const struct stand y =
+        fit_across(&camera, camera.up, 0.5 * height / camera.focal, n, balls);
     const double distance = x.distance > y.distance ? x.distance : y.distance;
     camera.eye = vec3_scale(-distance, camera.ahead);
     camera.eye = vec3_axpy(camera.eye, x.offset, camera.right);

@@ -10,10 +10,10 @@
 #include "base/vec3.h"
 
 struct camera {
-    struct vec3 eye;               /* [m] */
-    struct vec3 right, up, ahead;  /* orthonormal */
-    double focal;                  /* [pixels] */
-    double centre[2];              /* principal point [pixels], y downwards */
+    struct vec3 eye;              /* [m] */
+    struct vec3 right, up, ahead; /* orthonormal */
+    double focal;                 /* [pixels] */
+    double centre[2];             /* principal point [pixels], y downwards */
 };
 
 /* The part of a picture that a scene is to fill. */
@@ -32,8 +32,8 @@ struct camera_ball {
  * the -y axis towards +x and `elevation` above the horizon.  The nearest place is chosen from where all
  * balls fit the frame; zoom > 1 shows them larger about the middle.
  */
-struct camera camera_fit(double azimuth, double elevation, double zoom, struct camera_frame frame, int n,
-                         const struct camera_ball *balls);
+struct camera camera_fit(double azimuth, double elevation, double zoom,
+                         struct camera_frame frame, int n, const struct camera_ball *balls);
 
 /* Camera coordinates of a point, and of a direction. */
 struct vec3 camera_point(const struct camera *camera, struct vec3 point);

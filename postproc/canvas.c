@@ -28,8 +28,9 @@ static int clip(double value, int least, int most)
 static struct span span_of(const struct canvas *canvas, double left, double right, double top,
                            double bottom)
 {
-    return (struct span){clip(floor(left), 0, canvas->width), clip(ceil(right), -1, canvas->width - 1),
-                         clip(floor(top), 0, canvas->height), clip(ceil(bottom), -1, canvas->height - 1)};
+    return (struct span){
+        clip(floor(left), 0, canvas->width), clip(ceil(right), -1, canvas->width - 1),
+        clip(floor(top), 0, canvas->height), clip(ceil(bottom), -1, canvas->height - 1)};
 }
 
 static unsigned char byte_of(double value)
@@ -60,7 +61,8 @@ static struct vec3 ray_of(const struct camera *camera, int x, int y)
 
 void canvas_init(struct canvas *canvas, int width, int height)
 {
-    *canvas = (struct canvas){.width = width * CANVAS_SAMPLES, .height = height * CANVAS_SAMPLES};
+    *canvas =
+        (struct canvas){.width = width * CANVAS_SAMPLES, .height = height * CANVAS_SAMPLES};
     const size_t n = (size_t)canvas->width * (size_t)canvas->height;
     canvas->depth = array_allocate(n, sizeof *canvas->depth);
     canvas->colour = array_allocate(n, sizeof *canvas->colour);
@@ -105,7 +107,8 @@ static void sphere_sample(struct canvas *canvas, size_t i, struct vec3 ray, stru
     const double depth = (b - sqrt(discriminant)) / a;
     if (!(depth < (double)canvas->depth[i]))
         return;
-    const struct vec3 normal = vec3_scale(127.0 / radius, vec3_sub(vec3_scale(depth, ray), centre));
+    const struct vec3 normal =
+        vec3_scale(127.0 / radius, vec3_sub(vec3_scale(depth, ray), centre));
     canvas->depth[i] = (float)depth;
     canvas->normal[i][0] = (signed char)normal.x;
     canvas->normal[i][1] = (signed char)normal.y;
@@ -113,8 +116,8 @@ static void sphere_sample(struct canvas *canvas, size_t i, struct vec3 ray, stru
     memcpy(canvas->colour[i], colour, 3);
 }
 
-void canvas_sphere(struct canvas *canvas, const struct camera *camera, struct vec3 centre, double radius,
-                   struct colours_rgb colour)
+void canvas_sphere(struct canvas *canvas, const struct camera *camera, struct vec3 centre,
+                   double radius, struct colours_rgb colour)
 {
     const struct vec3 c = camera_point(camera, centre);
     if (!(c.z > 1.01 * radius))
@@ -123,14 +126,15 @@ void canvas_sphere(struct canvas *canvas, const struct camera *camera, struct ve
     slopes_of_ball(c.x, c.z, radius, across);
     slopes_of_ball(c.y, c.z, radius, upwards);
     const double f = camera->focal;
-    const struct span span =
-        span_of(canvas, camera->centre[0] + f * across[0] - 1.0, camera->centre[0] + f * across[1],
-                camera->centre[1] - f * upwards[1] - 1.0, camera->centre[1] - f * upwards[0]);
+    const struct span span = span_of(
+        canvas, camera->centre[0] + f * across[0] - 1.0, camera->centre[0] + f * across[1],
+        camera->centre[1] - f * upwards[1] - 1.0, camera->centre[1] - f * upwards[0]);
     const unsigned char bytes[3] = {byte_of((double)colour.r), byte_of((double)colour.g),
                                     byte_of((double)colour.b)};
     for (int y = span.top; y <= span.bottom; y++)
         for (int x = span.left; x <= span.right; x++)
-            sphere_sample(canvas, sample_at(canvas, x, y), ray_of(camera, x, y), c, radius, bytes);
+            sphere_sample(canvas, sample_at(canvas, x, y), ray_of(camera, x, y), c, radius,
+                          bytes);
 }
 
 /* ------------------------------------------------------------------------------------------- light */
@@ -187,8 +191,8 @@ static void shine(struct vec3 normal, double open, double *matt, double *gloss)
     *gloss = facing > 0.0 ? 0.16 * open * pow(facing, 40.0) : 0.0;
 }
 
-static void light_sample(struct canvas *canvas, const struct camera *camera, int x, int y, double reach,
-                         double probes[SHADE_PROBES][2])
+static void light_sample(struct canvas *canvas, const struct camera *camera, int x, int y,
+                         double reach, double probes[SHADE_PROBES][2])
 {
     const size_t i = sample_at(canvas, x, y);
     const signed char *n = canvas->normal[i];
@@ -238,8 +242,8 @@ static bool ray_inside(int n, const struct vec3 *sides, struct vec3 ray)
     return !(plus && minus);
 }
 
-static struct span span_of_polygon(const struct canvas *canvas, const struct camera *camera, int n,
-                                   const struct vec3 *corners)
+static struct span span_of_polygon(const struct canvas *canvas, const struct camera *camera,
+                                   int n, const struct vec3 *corners)
 {
     double least[2] = {INFINITY, INFINITY}, most[2] = {-INFINITY, -INFINITY};
     for (int i = 0; i < n; i++) {
@@ -253,14 +257,15 @@ static struct span span_of_polygon(const struct canvas *canvas, const struct cam
     return span_of(canvas, least[0] - 1.0, most[0], least[1] - 1.0, most[1]);
 }
 
-void canvas_facet(struct canvas *canvas, const struct camera *camera, int n, const struct vec3 *corners,
-                  struct colours_rgb colour, double opacity)
+void canvas_facet(struct canvas *canvas, const struct camera *camera, int n,
+                  const struct vec3 *corners, struct colours_rgb colour, double opacity)
 {
     CHECK(n <= POLYGON_MAX / 2, "a facet of %d corners", n);
     struct vec3 seen[POLYGON_MAX / 2], kept[POLYGON_MAX], sides[POLYGON_MAX];
     for (int i = 0; i < n; i++)
         seen[i] = camera_point(camera, corners[i]);
-    const struct vec3 normal = vec3_cross(vec3_sub(seen[1], seen[0]), vec3_sub(seen[2], seen[0]));
+    const struct vec3 normal =
+        vec3_cross(vec3_sub(seen[1], seen[0]), vec3_sub(seen[2], seen[0]));
     const int n_kept = clip_near(n, seen, kept);
     if (n_kept < 3)
         return;
@@ -272,13 +277,15 @@ void canvas_facet(struct canvas *canvas, const struct camera *camera, int n, con
             const struct vec3 ray = ray_of(camera, x, y);
             const size_t i = sample_at(canvas, x, y);
             const double depth = vec3_dot(normal, kept[0]) / vec3_dot(normal, ray);
-            if (ray_inside(n_kept, sides, ray) && depth > 0.0 && depth < (double)canvas->depth[i])
+            if (ray_inside(n_kept, sides, ray) && depth > 0.0 &&
+                depth < (double)canvas->depth[i])
                 paint(canvas, i, colour, opacity);
         }
 }
 
 /* Share of the way from a to b at which p is nearest, 0 to 1, and the square of the distance there. */
-static double nearest_share(const double a[2], const double b[2], const double p[2], double *square)
+static double nearest_share(const double a[2], const double b[2], const double p[2],
+                            double *square)
 {
     const double along[2] = {b[0] - a[0], b[1] - a[1]}, to[2] = {p[0] - a[0], p[1] - a[1]};
     const double length = along[0] * along[0] + along[1] * along[1];
@@ -304,13 +311,16 @@ static void draw_line(struct canvas *canvas, const double ends[2][2], const doub
     const int last = clip(b[along] + half, -1, sizes[along] - 1);
     for (int u = clip(a[along] - half, 0, sizes[along]); u <= last; u++) {
         const double way = length > 0.0 ? (u + 0.5 - a[along]) / length : 0.0;
-        const double middle = a[across] + (way > 0.0 ? (way < 1.0 ? way : 1.0) : 0.0) * (b[across] - a[across]);
+        const double middle =
+            a[across] + (way > 0.0 ? (way < 1.0 ? way : 1.0) : 0.0) * (b[across] - a[across]);
         const int end = clip(middle + 1.5 * half + 1.0, -1, sizes[across] - 1);
         for (int v = clip(middle - 1.5 * half - 1.0, 0, sizes[across]); v <= end; v++) {
             const int x = along == 0 ? u : v, y = along == 0 ? v : u;
             double square;
-            const double share = nearest_share(a, b, (const double[2]){x + 0.5, y + 0.5}, &square);
-            const double depth = 1.0 / (inverse[low] + share * (inverse[1 - low] - inverse[low]));
+            const double share =
+                nearest_share(a, b, (const double[2]){x + 0.5, y + 0.5}, &square);
+            const double depth =
+                1.0 / (inverse[low] + share * (inverse[1 - low] - inverse[low]));
             const size_t i = sample_at(canvas, x, y);
             if (square <= half * half && depth - slack < (double)canvas->depth[i])
                 paint(canvas, i, colour, 1.0);
@@ -318,8 +328,8 @@ static void draw_line(struct canvas *canvas, const double ends[2][2], const doub
     }
 }
 
-void canvas_edge(struct canvas *canvas, const struct camera *camera, struct vec3 a, struct vec3 b,
-                 double width, double slack, struct colours_rgb colour)
+void canvas_edge(struct canvas *canvas, const struct camera *camera, struct vec3 a,
+                 struct vec3 b, double width, double slack, struct colours_rgb colour)
 {
     struct vec3 p[2] = {camera_point(camera, a), camera_point(camera, b)};
     const double least = 0.01 * slack + NEAR;
@@ -334,13 +344,14 @@ void canvas_edge(struct canvas *canvas, const struct camera *camera, struct vec3
                                 camera->centre[1] - camera->focal * p[0].y / p[0].z},
                                {camera->centre[0] + camera->focal * p[1].x / p[1].z,
                                 camera->centre[1] - camera->focal * p[1].y / p[1].z}};
-    draw_line(canvas, ends, (const double[2]){1.0 / p[0].z, 1.0 / p[1].z}, width, slack, colour);
+    draw_line(canvas, ends, (const double[2]){1.0 / p[0].z, 1.0 / p[1].z}, width, slack,
+              colour);
 }
 
 /* ------------------------------------------------------------------------------ on the plane */
 
-void canvas_rectangle(struct canvas *canvas, double left, double top, double right, double bottom,
-                      struct colours_rgb colour)
+void canvas_rectangle(struct canvas *canvas, double left, double top, double right,
+                      double bottom, struct colours_rgb colour)
 {
     const struct span span = span_of(canvas, left, right - 1.0, top, bottom - 1.0);
     for (int y = span.top; y <= span.bottom; y++)
@@ -366,11 +377,13 @@ double canvas_text_width(double height, const char *text)
     return n > 0 ? dot_size(height) * (FONT_ADVANCE * (double)n - 2.0) : 0.0;
 }
 
-void canvas_text(struct canvas *canvas, double x, double y, double height, enum canvas_anchor anchor,
-                 struct colours_rgb colour, const char *text)
+void canvas_text(struct canvas *canvas, double x, double y, double height,
+                 enum canvas_anchor anchor, struct colours_rgb colour, const char *text)
 {
     const double dot = dot_size(height), width = canvas_text_width(height, text);
-    double left = anchor == CANVAS_LEFT ? x : anchor == CANVAS_MIDDLE ? x - 0.5 * width : x - width;
+    double left = anchor == CANVAS_LEFT     ? x
+                  : anchor == CANVAS_MIDDLE ? x - 0.5 * width
+                                            : x - width;
     for (; *text != '\0'; text++, left += dot * FONT_ADVANCE) {
         struct font_stroke strokes[FONT_STROKES_MAX];
         const int n = font_strokes(*text, strokes);

@@ -32,25 +32,25 @@ enum canvas_anchor { CANVAS_LEFT, CANVAS_MIDDLE, CANVAS_RIGHT };
 void canvas_init(struct canvas *canvas, int width, int height);
 void canvas_clear(struct canvas *canvas);
 
-void canvas_sphere(struct canvas *canvas, const struct camera *camera, struct vec3 centre, double radius,
-                   struct colours_rgb colour);
+void canvas_sphere(struct canvas *canvas, const struct camera *camera, struct vec3 centre,
+                   double radius, struct colours_rgb colour);
 /* Lights the spheres drawn so far; `reach` is how far surfaces shade each other [m]. */
 void canvas_light(struct canvas *canvas, const struct camera *camera, double reach);
 /* A convex polygon of n <= 8 corners, like a sheet of glass of this opacity. */
-void canvas_facet(struct canvas *canvas, const struct camera *camera, int n, const struct vec3 *corners,
-                  struct colours_rgb colour, double opacity);
+void canvas_facet(struct canvas *canvas, const struct camera *camera, int n,
+                  const struct vec3 *corners, struct colours_rgb colour, double opacity);
 /* A line in space, `width` samples wide, hidden by what is nearer by more than `slack` [m]. */
-void canvas_edge(struct canvas *canvas, const struct camera *camera, struct vec3 a, struct vec3 b,
-                 double width, double slack, struct colours_rgb colour);
+void canvas_edge(struct canvas *canvas, const struct camera *camera, struct vec3 a,
+                 struct vec3 b, double width, double slack, struct colours_rgb colour);
 
 /* On the picture's plane, in samples from the top left corner. */
-void canvas_rectangle(struct canvas *canvas, double left, double top, double right, double bottom,
-                      struct colours_rgb colour);
+void canvas_rectangle(struct canvas *canvas, double left, double top, double right,
+                      double bottom, struct colours_rgb colour);
 void canvas_stroke(struct canvas *canvas, const double a[2], const double b[2], double width,
                    struct colours_rgb colour);
 /* Text whose capitals are `height` samples high and stand on y. */
-void canvas_text(struct canvas *canvas, double x, double y, double height, enum canvas_anchor anchor,
-                 struct colours_rgb colour, const char *text);
+void canvas_text(struct canvas *canvas, double x, double y, double height,
+                 enum canvas_anchor anchor, struct colours_rgb colour, const char *text);
 double canvas_text_width(double height, const char *text);
 
 /* The picture: the mean of each pixel's samples. */

@@ -29,13 +29,15 @@ static void png_fails(png_structp png, png_const_charp text)
     longjmp(png_jmpbuf(png), 1);
 }
 
-static bool write_stream(const struct image *image, FILE *stream, png_structp png, png_infop info)
+static bool write_stream(const struct image *image, FILE *stream, png_structp png,
+                         png_infop info)
 {
     if (setjmp(png_jmpbuf(png)) != 0)
         return false;
     png_init_io(png, stream);
-    png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height, 8, PNG_COLOR_TYPE_RGB,
-                 PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+    png_set_IHDR(png, info, (png_uint_32)image->width, (png_uint_32)image->height, 8,
+                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
     png_write_info(png, info);
     for (int y = 0; y < image->height; y++)
         png_write_row(png, image->pixels + (size_t)y * (size_t)image->width * 3);
@@ -57,7 +59,8 @@ int image_write_png(const struct image *image, const char *path)
     const bool written = write_stream(image, stream, png, info);
     png_destroy_write_struct(&png, &info);
     if (fclose(stream) != 0 || !written) {
-        report_error("cannot write all of %s: %s; check the space on its disk", path, strerror(errno));
+        report_error("cannot write all of %s: %s; check the space on its disk", path,
+                     strerror(errno));
         return REPORT_STORAGE;
     }
     return REPORT_FINISHED;

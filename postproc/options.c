@@ -12,9 +12,10 @@ static void print_entry(const struct options_entry *entry)
 {
     char left[64];
     const char *argument = entry->argument != NULL ? entry->argument : "";
-    const int n = entry->letter != 0
-                      ? snprintf(left, sizeof left, "-%c, --%s %s", entry->letter, entry->name, argument)
-                      : snprintf(left, sizeof left, "--%s %s", entry->name, argument);
+    const int n =
+        entry->letter != 0
+            ? snprintf(left, sizeof left, "-%c, --%s %s", entry->letter, entry->name, argument)
+            : snprintf(left, sizeof left, "--%s %s", entry->name, argument);
     CHECK(n > 0 && (size_t)n < sizeof left, "the option %s has too long a name", entry->name);
     printf("  %-24s %s", left, entry->help);
     for (int i = 0; entry->kind == OPTIONS_CHOICE && entry->choices[i] != NULL; i++)
@@ -36,8 +37,9 @@ static const struct options_entry *find_entry(const struct options_page *page, c
 {
     for (int i = 0; i < page->n_entries; i++) {
         const struct options_entry *entry = &page->entries[i];
-        if (letter != 0 ? entry->letter == letter
-                        : strlen(entry->name) == length && strncmp(entry->name, name, length) == 0)
+        if (letter != 0
+                ? entry->letter == letter
+                : strlen(entry->name) == length && strncmp(entry->name, name, length) == 0)
             return entry;
     }
     return NULL;
@@ -64,7 +66,8 @@ static bool take_choice(const struct options_entry *entry, const char *text)
             return true;
         }
         const size_t used = strlen(list);
-        snprintf(list + used, sizeof list - used, "%s%s", i == 0 ? "" : ", ", entry->choices[i]);
+        snprintf(list + used, sizeof list - used, "%s%s", i == 0 ? "" : ", ",
+                 entry->choices[i]);
     }
     report_error("--%s is given \"%s\"; choose one of %s", entry->name, text, list);
     return false;
@@ -97,7 +100,8 @@ static bool take_option(const struct options_page *page, int argc, char **argv, 
     const size_t length = equals != NULL ? (size_t)(equals - name) : strlen(name);
     const bool lone_letter = !is_long && length == 1;
     const struct options_entry *entry =
-        is_long || lone_letter ? find_entry(page, name, length, lone_letter ? name[0] : 0) : NULL;
+        is_long || lone_letter ? find_entry(page, name, length, lone_letter ? name[0] : 0)
+                               : NULL;
     if (entry == NULL) {
         report_error("there is no option %s; see %s --help", text, page->tool);
         return false;
@@ -119,7 +123,8 @@ static int check_count(const struct options_page *page, int n)
 {
     if (n >= page->n_least && n <= page->n_most)
         return OPTIONS_GO_ON;
-    report_error("%d argument%s given; usage: %s %s", n, n == 1 ? " is" : "s are", page->tool, page->usage);
+    report_error("%d argument%s given; usage: %s %s", n, n == 1 ? " is" : "s are", page->tool,
+                 page->usage);
     return REPORT_BAD_INPUT;
 }
 

@@ -17,8 +17,8 @@ enum options_kind {
 };
 
 struct options_entry {
-    const char *name;     /* without the dashes */
-    char letter;          /* short form; 0 when there is none */
+    const char *name; /* without the dashes */
+    char letter;      /* short form; 0 when there is none */
     enum options_kind kind;
     void *value;          /* where it goes; keeps what it holds when the option is absent */
     const char *argument; /* how --help calls the value */

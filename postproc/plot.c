@@ -9,7 +9,15 @@
 #include "base/report.h"
 #include "ticks.h"
 
-enum { WIDTH = 860, PANEL_HEIGHT = 300, LEFT = 86, RIGHT = 24, TOP = 44, GAP = 62, LEGEND_STEP = 17 };
+enum {
+    WIDTH = 860,
+    PANEL_HEIGHT = 300,
+    LEFT = 86,
+    RIGHT = 24,
+    TOP = 44,
+    GAP = 62,
+    LEGEND_STEP = 17
+};
 
 static const char *const palette[PLOT_COLOURS] = {"#2b6ca3", "#c8553d", "#3d8b5f", "#8a5aa8",
                                                   "#b8862b", "#3a9aa5", "#9a4a6a", "#5c636e"};
@@ -63,7 +71,8 @@ static void extend(double range[2], int n, const double *values)
     }
 }
 
-/* A range that is empty or a single number gets some width; others a little air above and below. */
+/* A range that is empty or a single number gets some width; others this share of it as air above, and
+ * below where they go below zero. */
 static void relax(double range[2], double air)
 {
     if (!(range[0] <= range[1])) {
@@ -86,13 +95,16 @@ static void relax(double range[2], double air)
 static struct frame frame_of(const struct plot_panel *panel, int index)
 {
     const double top = TOP + index * (PANEL_HEIGHT + GAP);
-    struct frame frame = {LEFT, WIDTH - RIGHT, top, top + PANEL_HEIGHT, {INFINITY, -INFINITY}, {0.0, -INFINITY}};
+    struct frame frame = {
+        LEFT, WIDTH - RIGHT, top, top + PANEL_HEIGHT, {INFINITY, -INFINITY}, {0.0, -INFINITY}};
+    double legend = 0.0; /* its height as a share of the panel's */
     for (int i = 0; i < panel->n_curves; i++) {
         extend(frame.x, panel->curves[i].n, panel->curves[i].x);
         extend(frame.y, panel->curves[i].n, panel->curves[i].y);
+        legend += panel->curves[i].label != NULL ? (double)LEGEND_STEP / PANEL_HEIGHT : 0.0;
     }
     relax(frame.x, 0.0);
-    relax(frame.y, 0.06);
+    relax(frame.y, 0.06 + 1.2 * (legend < 0.5 ? legend : 0.5));
     return frame;
 }
 
@@ -116,21 +128,24 @@ static void write_axes(FILE *stream, const struct plot_panel *panel, const struc
     const struct ticks upwards = ticks_between(frame->y[0], frame->y[1], 5);
     for (int i = 0; i < across.n; i++) {
         const double x = page_x(frame, across.values[i]);
-        fprintf(stream, "<path d=\"M%.1f %.1fV%.1f\" stroke=\"#e4e7eb\"/>\n", x, frame->top, frame->bottom);
+        fprintf(stream, "<path d=\"M%.1f %.1fV%.1f\" stroke=\"#e4e7eb\"/>\n", x, frame->top,
+                frame->bottom);
         write_text(stream, x, frame->bottom + 17, "text-anchor=\"middle\"", across.texts[i]);
     }
     for (int i = 0; i < upwards.n; i++) {
         const double y = page_y(frame, upwards.values[i]);
-        fprintf(stream, "<path d=\"M%.1f %.1fH%.1f\" stroke=\"#e4e7eb\"/>\n", frame->left, y, frame->right);
+        fprintf(stream, "<path d=\"M%.1f %.1fH%.1f\" stroke=\"#e4e7eb\"/>\n", frame->left, y,
+                frame->right);
         write_text(stream, frame->left - 7, y + 4, "text-anchor=\"end\"", upwards.texts[i]);
     }
-    fprintf(stream, "<path d=\"M%.1f %.1fV%.1fH%.1f\" fill=\"none\" stroke=\"#5c636e\"/>\n", frame->left,
-            frame->top, frame->bottom, frame->right);
-    write_text(stream, 0.5 * (frame->left + frame->right), frame->bottom + 36, "text-anchor=\"middle\"",
-               panel->x_label);
+    fprintf(stream, "<path d=\"M%.1f %.1fV%.1fH%.1f\" fill=\"none\" stroke=\"#5c636e\"/>\n",
+            frame->left, frame->top, frame->bottom, frame->right);
+    write_text(stream, 0.5 * (frame->left + frame->right), frame->bottom + 36,
+               "text-anchor=\"middle\"", panel->x_label);
     char style[96];
     const double middle = 0.5 * (frame->top + frame->bottom);
-    snprintf(style, sizeof style, "text-anchor=\"middle\" transform=\"rotate(-90 20 %.1f)\"", middle);
+    snprintf(style, sizeof style, "text-anchor=\"middle\" transform=\"rotate(-90 20 %.1f)\"",
+             middle);
     write_text(stream, 20, middle, style, panel->y_label);
 }
 
@@ -138,9 +153,10 @@ static void write_band(FILE *stream, const struct frame *frame, const struct plo
 {
     const double left = page_x(frame, band->x[0]), right = page_x(frame, band->x[1]);
     const double top = page_y(frame, band->y[1]), bottom = page_y(frame, band->y[0]);
-    fprintf(stream,
-            "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" fill=\"%s\" fill-opacity=\"0.13\"/>\n",
-            left, top, right - left, bottom - top, colour_of(band->colour));
+    fprintf(
+        stream,
+        "<rect x=\"%.2f\" y=\"%.2f\" width=\"%.2f\" height=\"%.2f\" fill=\"%s\" fill-opacity=\"0.13\"/>\n",
+        left, top, right - left, bottom - top, colour_of(band->colour));
 }
 
 static void write_curve(FILE *stream, const struct frame *frame, const struct plot_curve *curve)
@@ -158,21 +174,26 @@ static void write_curve(FILE *stream, const struct frame *frame, const struct pl
         fprintf(stream, "%c%.2f %.2f", curve->steps && i > 0 ? 'L' : pen, x, y);
         pen = 'L';
     }
-    fprintf(stream, "\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.6\" stroke-linejoin=\"round\"%s/>\n",
-            colour_of(curve->colour), curve->dashed ? " stroke-dasharray=\"6 4\"" : "");
+    fprintf(
+        stream,
+        "\" fill=\"none\" stroke=\"%s\" stroke-width=\"1.6\" stroke-linejoin=\"round\"%s/>\n",
+        colour_of(curve->colour), curve->dashed ? " stroke-dasharray=\"6 4\"" : "");
 }
 
-static void write_legend(FILE *stream, const struct plot_panel *panel, const struct frame *frame)
+static void write_legend(FILE *stream, const struct plot_panel *panel,
+                         const struct frame *frame)
 {
     double y = frame->top + 14;
     for (int i = 0; i < panel->n_curves; i++) {
         const struct plot_curve *curve = &panel->curves[i];
         if (curve->label == NULL)
             continue;
-        fprintf(stream, "<path d=\"M%.1f %.1fh24\" stroke=\"%s\" stroke-width=\"2\"%s/>\n", frame->left + 12, y,
-                colour_of(curve->colour), curve->dashed ? " stroke-dasharray=\"6 4\"" : "");
+        fprintf(stream, "<path d=\"M%.1f %.1fh24\" stroke=\"%s\" stroke-width=\"2\"%s/>\n",
+                frame->left + 12, y, colour_of(curve->colour),
+                curve->dashed ? " stroke-dasharray=\"6 4\"" : "");
         write_text(stream, frame->left + 43, y + 4,
-                   "paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"3\"", curve->label);
+                   "paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"3\"",
+                   curve->label);
         y += LEGEND_STEP;
     }
 }
@@ -196,18 +217,20 @@ int plot_write_svg(const struct plot *plot, const char *path)
         return REPORT_STORAGE;
     }
     const int height = TOP + plot->n_panels * (PANEL_HEIGHT + GAP);
-    fprintf(stream,
-            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
-            "font-family=\"Helvetica, Arial, sans-serif\" font-size=\"12.5\" fill=\"#2b2f36\">\n"
-            "<rect width=\"%d\" height=\"%d\" fill=\"#ffffff\"/>\n",
-            WIDTH, height, WIDTH, height, WIDTH, height);
+    fprintf(
+        stream,
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"%d\" height=\"%d\" viewBox=\"0 0 %d %d\" "
+        "font-family=\"Helvetica, Arial, sans-serif\" font-size=\"12.5\" fill=\"#2b2f36\">\n"
+        "<rect width=\"%d\" height=\"%d\" fill=\"#ffffff\"/>\n",
+        WIDTH, height, WIDTH, height, WIDTH, height);
     write_text(stream, LEFT, 26, "font-size=\"16\"", plot->title);
     for (int i = 0; i < plot->n_panels; i++)
         write_panel(stream, &plot->panels[i], i);
     fputs("</svg>\n", stream);
     const bool failed = ferror(stream) != 0;
     if (fclose(stream) != 0 || failed) {
-        report_error("cannot write all of %s: %s; check the space on its disk", path, strerror(errno));
+        report_error("cannot write all of %s: %s; check the space on its disk", path,
+                     strerror(errno));
         return REPORT_STORAGE;
     }
     return REPORT_FINISHED;

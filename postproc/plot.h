@@ -14,7 +14,7 @@ struct plot_curve {
     const char *label; /* NULL: not in the legend */
     int n;
     const double *x, *y;
-    int colour;  /* number in the palette */
+    int colour; /* number in the palette */
     bool dashed;
     bool steps; /* y[i] holds from x[i-1] to x[i] */
 };

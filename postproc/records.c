@@ -22,8 +22,8 @@ int records_read(struct series *series, const char *run_folder, const char *tabl
     char *why;
     if (series_read(series, run_folder, table, &why))
         return REPORT_FINISHED;
-    report_error("%s; is %s the folder of a run, and has the run written its first checkpoint?", why,
-                 run_folder);
+    report_error("%s; is %s the folder of a run, and has the run written its first checkpoint?",
+                 why, run_folder);
     free(why);
     return REPORT_STORAGE;
 }
@@ -58,7 +58,8 @@ static struct summary summary_of(const struct series *series, const char *name)
     struct summary summary = {0, 0.0, -INFINITY, (double)NAN};
     const int index = series_column_index(series, name);
     for (int i = 0; index >= 0 && i < series->n_rows; i++) {
-        const double value = series->values[(size_t)i * (size_t)series->n_columns + (size_t)index];
+        const double value =
+            series->values[(size_t)i * (size_t)series->n_columns + (size_t)index];
         if (isnan(value))
             continue;
         summary.n++;

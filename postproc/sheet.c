@@ -127,7 +127,8 @@ int sheet_write_csv(const struct sheet *sheet, const char *path)
         write_csv_cell(stream, sheet->cells[i], i % n == n - 1);
     const bool failed = ferror(stream) != 0;
     if (fclose(stream) != 0 || failed) {
-        report_error("cannot write all of %s: %s; check the space on its disk", path, strerror(errno));
+        report_error("cannot write all of %s: %s; check the space on its disk", path,
+                     strerror(errno));
         return REPORT_STORAGE;
     }
     return REPORT_FINISHED;

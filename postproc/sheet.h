@@ -16,8 +16,10 @@ struct sheet {
 
 void sheet_init(struct sheet *sheet);
 void sheet_clear(struct sheet *sheet);
-void sheet_heading(struct sheet *sheet, const char *format, ...) __attribute__((format(printf, 2, 3)));
-void sheet_cell(struct sheet *sheet, const char *format, ...) __attribute__((format(printf, 2, 3)));
+void sheet_heading(struct sheet *sheet, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
+void sheet_cell(struct sheet *sheet, const char *format, ...)
+    __attribute__((format(printf, 2, 3)));
 
 /* First column to the left, the others to the right, two blanks between. */
 void sheet_print(const struct sheet *sheet, FILE *stream);

@@ -25,7 +25,20 @@ double steady_student(int degrees)
     const double z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z, z9 = z7 * z * z;
     return z + (z3 + z) / (4.0 * v) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * v * v) +
            (3.0 * z7 + 19.0 * z5 + 17.0 * z3 - 15.0 * z) / (384.0 * v * v * v) +
-           (79.0 * z9 + 776.0 * z7 + 1482.0 * z5 - 1920.0 * z3 - 945.0 * z) / (92160.0 * v * v * v * v);
+           (79.0 * z9 + 776.0 * z7 + 1482.0 * z5 - 1920.0 * z3 - 945.0 * z) /
+               (92160.0 * v * v * v * v);
+}
+
+void steady_write_interval(char text[STEADY_TEXT_SIZE], double value, double half_width)
+{
+    if (!(half_width > 1e-12 * fabs(value)) || half_width > 1e9 || half_width < 1e-9) {
+        snprintf(text, STEADY_TEXT_SIZE, "%.6g +- %.2g", value, half_width);
+        return;
+    }
+    const double unit = pow(10.0, floor(log10(half_width)) - 1.0);
+    const int decimals = unit < 0.5 ? (int)lround(-log10(unit)) : 0;
+    snprintf(text, STEADY_TEXT_SIZE, "%.*f +- %.*f", decimals, round(value / unit) * unit,
+             decimals, round(half_width / unit) * unit);
 }
 
 /* The total at any time, linear between samples. */
@@ -80,7 +93,8 @@ static bool ends_far(int n, const double *values, struct moments moments)
 {
     const int ends[4] = {0, 1, n - 2, n - 1};
     for (int k = 0; k < 4; k++)
-        if (fabs(values[ends[k]] - moments.mean) > ENDS_FAR * moments.deviation + 1e-12 * fabs(moments.mean))
+        if (fabs(values[ends[k]] - moments.mean) >
+            ENDS_FAR * moments.deviation + 1e-12 * fabs(moments.mean))
             return true;
     return false;
 }
@@ -89,7 +103,8 @@ static bool window_is_steady(int n, const double *values)
 {
     /* The deviation of the inner batches: those at the ends are on trial. */
     const struct moments inner = moments_of(n - 4, values + 2), all = moments_of(n, values);
-    const struct moments judge = {inner.mean, n - 4 >= STEADY_BATCHES_LEAST ? inner.deviation : all.deviation};
+    const struct moments judge = {inner.mean, n - 4 >= STEADY_BATCHES_LEAST ? inner.deviation
+                                                                            : all.deviation};
     return !ends_far(n, values, judge) && !has_trend(n, values, all.mean);
 }
 
@@ -113,7 +128,8 @@ static void measure(struct steady *steady, const struct batches *batches, int fi
     steady->from = batches->begin + first * batches->length;
     steady->to = steady->from + n * batches->length;
     steady->rate = moments_of(n, values).mean;
-    while (n >= 2 * STEADY_BATCHES_LEAST && correlation(n, values, moments_of(n, values)) > CORRELATED) {
+    while (n >= 2 * STEADY_BATCHES_LEAST &&
+           correlation(n, values, moments_of(n, values)) > CORRELATED) {
         n /= 2;
         for (int i = 0; i < n; i++)
             values[i] = 0.5 * (values[2 * i] + values[2 * i + 1]);
@@ -142,7 +158,8 @@ static void search_windows(struct steady *steady, const struct batches *batches)
         }
     }
     snprintf(steady->why, sizeof steady->why,
-             "the rate drifts in every window of %.0f %% or more of the flow's time", 100.0 * SHARE_LEAST);
+             "the rate drifts in every window of %.0f %% or more of the flow's time",
+             100.0 * SHARE_LEAST);
 }
 
 /* First and last row between which the total changes; false when it never does. */
@@ -163,17 +180,20 @@ struct steady steady_find(int n, const double *time, const double *total)
     struct steady steady = {0};
     int first, last;
     if (n < 2 || !find_flow(n, total, &first, &last)) {
-        snprintf(steady.why, sizeof steady.why, n < 2 ? "there are fewer than two samples" : "nothing passed");
+        snprintf(steady.why, sizeof steady.why,
+                 n < 2 ? "there are fewer than two samples" : "nothing passed");
         return steady;
     }
     steady.flows = true;
     steady.begin = time[first];
     steady.end = time[last];
     const int n_intervals = last - first;
-    struct batches batches = {.n = n_intervals < STEADY_BATCHES_MAX ? n_intervals : STEADY_BATCHES_MAX,
+    struct batches batches = {.n = n_intervals < STEADY_BATCHES_MAX ? n_intervals
+                                                                    : STEADY_BATCHES_MAX,
                               .begin = steady.begin};
     if (batches.n < STEADY_BATCHES_LEAST + 2) {
-        snprintf(steady.why, sizeof steady.why, "it flows in %d samples only; at least %d are needed", n_intervals,
+        snprintf(steady.why, sizeof steady.why,
+                 "it flows in %d samples only; at least %d are needed", n_intervals,
                  STEADY_BATCHES_LEAST + 2);
         return steady;
     }

@@ -23,18 +23,21 @@
 enum { STEADY_BATCHES_MAX = 32, STEADY_BATCHES_LEAST = 6, STEADY_TEXT_SIZE = 160 };
 
 struct steady {
-    bool flows;          /* anything passed */
-    double begin, end;   /* of the flow [s] */
-    bool found;          /* a steady window; else `why` says what is missing */
+    bool flows;        /* anything passed */
+    double begin, end; /* of the flow [s] */
+    bool found;        /* a steady window; else `why` says what is missing */
     char why[STEADY_TEXT_SIZE];
-    double from, to;     /* the window [s] */
-    int n_batches;       /* that the interval rests on */
-    double rate;         /* mean over the window [per s] */
-    double half_width;   /* of the 95 % interval [per s] */
+    double from, to;   /* the window [s] */
+    int n_batches;     /* that the interval rests on */
+    double rate;       /* mean over the window [per s] */
+    double half_width; /* of the 95 % interval [per s] */
 };
 
 /* n samples of a running total at increasing times. */
 struct steady steady_find(int n, const double *time, const double *total);
+
+/* A number with its uncertainty, both to the latter's second digit: "29430 +- 710". */
+void steady_write_interval(char text[STEADY_TEXT_SIZE], double value, double half_width);
 
 /* Student's t for a two-sided 95 % interval, 4 or more degrees of freedom (to three digits). */
 double steady_student(int degrees);

@@ -36,9 +36,11 @@ struct ticks ticks_between(double least, double most, int wanted)
     const double step = round_step((most - least) / wanted);
     const double largest = fabs(most) > fabs(least) ? fabs(most) : fabs(least);
     const double slack = 1e-9 * (most - least);
-    for (double k = ceil((least - slack) / step); k * step <= most + slack && ticks.n < TICKS_MAX; k += 1.0) {
-        ticks.values[ticks.n] = k * step;
-        write_tick(ticks.texts[ticks.n++], k * step, step, largest);
+    for (double k = ceil((least - slack) / step);
+         k * step <= most + slack && ticks.n < TICKS_MAX; k += 1.0) {
+        ticks.values[ticks.n] = k * step + 0.0; /* not -0 */
+        write_tick(ticks.texts[ticks.n], ticks.values[ticks.n], step, largest);
+        ticks.n++;
     }
     return ticks;
 }

@@ -18,7 +18,8 @@
 #include "steady.h"
 
 enum { ROWS_SHOWN = 20, RATES_PLOTTED = 80, NOTHING_TO_REPORT = 1 };
-static const char MARK[] = ".mass_forward"; /* ends the name of a column that every section has */
+static const char MARK[] =
+    ".mass_forward"; /* ends the name of a column that every section has */
 
 struct section {
     char *name;
@@ -26,7 +27,7 @@ struct section {
     double *mass;                           /* net [kg] */
     double *rate;                           /* since the row before [kg/s] */
     struct steady steady;
-    double n_per_second;                    /* spheres, over the steady window */
+    double n_per_second; /* spheres, over the steady window */
 };
 
 struct discharge {
@@ -52,7 +53,8 @@ static double net_count(const struct section *section, int row)
     return section->count_forward[row] - section->count_backward[row];
 }
 
-static bool read_section(struct discharge *d, struct section *section, const struct series *series)
+static bool read_section(struct discharge *d, struct section *section,
+                         const struct series *series)
 {
     const char *name = section->name;
     double *backward = records_column(series, "%s.mass_backward", name);
@@ -60,11 +62,13 @@ static bool read_section(struct discharge *d, struct section *section, const str
     section->count_forward = records_column(series, "%s.count_forward", name);
     section->count_backward = records_column(series, "%s.count_backward", name);
     section->rate = array_allocate((size_t)d->n_rows, sizeof *section->rate);
-    const bool whole = backward != NULL && section->count_forward != NULL && section->count_backward != NULL;
+    const bool whole =
+        backward != NULL && section->count_forward != NULL && section->count_backward != NULL;
     for (int i = 0; whole && i < d->n_rows; i++)
         section->mass[i] -= backward[i];
     for (int i = 1; i < d->n_rows; i++)
-        section->rate[i] = (section->mass[i] - section->mass[i - 1]) / (d->time[i] - d->time[i - 1]);
+        section->rate[i] =
+            (section->mass[i] - section->mass[i - 1]) / (d->time[i] - d->time[i - 1]);
     free(backward);
     return whole;
 }
@@ -108,12 +112,14 @@ static int read_run(struct discharge *d, const char *run)
     const int status = records_read(&series, run, "series");
     if (status != REPORT_FINISHED)
         return status;
-    *d = (struct discharge){.run = run, .n_rows = series.n_rows, .time = records_column(&series, "time")};
+    *d = (struct discharge){
+        .run = run, .n_rows = series.n_rows, .time = records_column(&series, "time")};
     const bool whole = d->time != NULL && read_sections(d, &series);
     series_clear(&series);
     if (whole)
         return REPORT_FINISHED;
-    report_error("the series of %s lack columns that every run writes; was it written by tremie?", run);
+    report_error(
+        "the series of %s lack columns that every run writes; was it written by tremie?", run);
     return REPORT_STORAGE;
 }
 
@@ -136,7 +142,8 @@ static void print_rows(const struct discharge *d, const struct section *section)
 {
     struct sheet sheet;
     sheet_init(&sheet);
-    const char *const headings[] = {"time [s]", "forward", "backward", "net", "net mass [kg]", "rate [kg/s]"};
+    const char *const headings[] = {"time [s]", "forward",       "backward",
+                                    "net",      "net mass [kg]", "rate [kg/s]"};
     for (size_t i = 0; i < sizeof headings / sizeof *headings; i++)
         sheet_heading(&sheet, "%s", headings[i]);
     const int n_shown = d->n_rows < ROWS_SHOWN ? d->n_rows : ROWS_SHOWN;
@@ -150,7 +157,8 @@ static void print_rows(const struct discharge *d, const struct section *section)
         if (k == 0)
             sheet_cell(&sheet, "-");
         else
-            sheet_cell(&sheet, "%.4g", (section->mass[i] - section->mass[last]) / (d->time[i] - d->time[last]));
+            sheet_cell(&sheet, "%.4g",
+                       (section->mass[i] - section->mass[last]) / (d->time[i] - d->time[last]));
         last = i;
     }
     sheet_print(&sheet, stdout);
@@ -164,14 +172,15 @@ static void print_section(const struct discharge *d, const struct section *secti
     printf("\nsection %s\n", section->name);
     print_rows(d, section);
     printf("total: %.0f spheres net (%.0f forward, %.0f backward), %.6g kg at %.6g s\n",
-           net_count(section, last), section->count_forward[last], section->count_backward[last],
-           section->mass[last], d->time[last]);
+           net_count(section, last), section->count_forward[last],
+           section->count_backward[last], section->mass[last], d->time[last]);
     if (steady->flows)
         printf("flow: from %.4g s to %.4g s\n", steady->begin, steady->end);
+    char rate[STEADY_TEXT_SIZE];
+    steady_write_interval(rate, steady->rate, steady->half_width);
     if (steady->found)
-        printf("steady: from %.4g s to %.4g s, %.5g +- %.2g kg/s (95 %%, %d batches), %.5g spheres/s\n",
-               steady->from, steady->to, steady->rate, steady->half_width, steady->n_batches,
-               section->n_per_second);
+        printf("steady: from %.4g s to %.4g s, %s kg/s (95 %%, %d batches), %.5g spheres/s\n",
+               steady->from, steady->to, rate, steady->n_batches, section->n_per_second);
     else
         printf("no steady window: %s\n", steady->why);
 }
@@ -214,25 +223,37 @@ static struct coarse coarsen(const struct discharge *d, const struct section *se
     struct coarse coarse = {.time = array_allocate((size_t)d->n_rows, sizeof(double)),
                             .rate = array_allocate((size_t)d->n_rows, sizeof(double))};
     for (int i = 0; i < d->n_rows; i += stride) {
-        const int from = i > 0 ? i - stride : 0, to = i > 0 ? i : stride < d->n_rows ? stride : d->n_rows - 1;
+        const int from = i > 0 ? i - stride : 0, to = i > 0                ? i
+                                                      : stride < d->n_rows ? stride
+                                                                           : d->n_rows - 1;
         coarse.time[coarse.n] = d->time[i];
-        coarse.rate[coarse.n++] = (section->mass[to] - section->mass[from]) / (d->time[to] - d->time[from]);
+        coarse.rate[coarse.n++] =
+            (section->mass[to] - section->mass[from]) / (d->time[to] - d->time[from]);
     }
     return coarse;
 }
 
-static void plot_section(struct plot *plot, const struct discharge *d, int s, const struct coarse *coarse,
-                         char **label, double level[2][2])
+static void plot_section(struct plot *plot, const struct discharge *d, int s,
+                         const struct coarse *coarse, char **label, double level[2][2])
 {
     const struct section *section = &d->sections[s];
     const struct steady *steady = &section->steady;
-    plot_add_curve(&plot->panels[0], (struct plot_curve){.label = section->name, .n = d->n_rows, .x = d->time,
-                                                         .y = section->mass, .colour = s});
-    *label = steady->found ? array_format("%s: %.4g +- %.2g kg/s (95 %%) from %.3g s to %.3g s", section->name,
-                                          steady->rate, steady->half_width, steady->from, steady->to)
+    plot_add_curve(&plot->panels[0], (struct plot_curve){.label = section->name,
+                                                         .n = d->n_rows,
+                                                         .x = d->time,
+                                                         .y = section->mass,
+                                                         .colour = s});
+    char rate[STEADY_TEXT_SIZE];
+    steady_write_interval(rate, steady->rate, steady->half_width);
+    *label = steady->found ? array_format("%s: %s kg/s (95 %%) from %.3g s to %.3g s",
+                                          section->name, rate, steady->from, steady->to)
                            : array_format("%s: no steady window", section->name);
-    plot_add_curve(&plot->panels[1], (struct plot_curve){.label = *label, .n = coarse->n, .x = coarse->time,
-                                                         .y = coarse->rate, .colour = s, .steps = true});
+    plot_add_curve(&plot->panels[1], (struct plot_curve){.label = *label,
+                                                         .n = coarse->n,
+                                                         .x = coarse->time,
+                                                         .y = coarse->rate,
+                                                         .colour = s,
+                                                         .steps = true});
     if (!steady->found)
         return;
     level[0][0] = steady->from;
@@ -240,11 +261,13 @@ static void plot_section(struct plot *plot, const struct discharge *d, int s, co
     level[1][0] = level[1][1] = steady->rate;
     plot_add_band(&plot->panels[0],
                   (struct plot_band){{steady->from, steady->to}, {-INFINITY, INFINITY}, s});
-    plot_add_band(&plot->panels[1],
-                  (struct plot_band){{steady->from, steady->to},
-                                     {steady->rate - steady->half_width, steady->rate + steady->half_width}, s});
-    plot_add_curve(&plot->panels[1],
-                   (struct plot_curve){.n = 2, .x = level[0], .y = level[1], .colour = s, .dashed = true});
+    plot_add_band(&plot->panels[1], (struct plot_band){{steady->from, steady->to},
+                                                       {steady->rate - steady->half_width,
+                                                        steady->rate + steady->half_width},
+                                                       s});
+    plot_add_curve(
+        &plot->panels[1],
+        (struct plot_curve){.n = 2, .x = level[0], .y = level[1], .colour = s, .dashed = true});
 }
 
 static int write_svg(const struct discharge *d, const char *path)
@@ -278,11 +301,14 @@ static int write_svg(const struct discharge *d, const char *path)
 static int show(struct discharge *d, const char *csv, const char *svg)
 {
     if (d->n_sections == 0) {
-        printf("%s has no section, so nothing is counted; name one under `sections:` in the job\n", d->run);
+        printf(
+            "%s has no section, so nothing is counted; name one under `sections:` in the job\n",
+            d->run);
         return NOTHING_TO_REPORT;
     }
     if (d->n_rows < 2) {
-        printf("%s has %d sample%s so far; a rate needs two\n", d->run, d->n_rows, d->n_rows == 1 ? "" : "s");
+        printf("%s has %d sample%s so far; a rate needs two\n", d->run, d->n_rows,
+               d->n_rows == 1 ? "" : "s");
         return NOTHING_TO_REPORT;
     }
     printf("discharge of %s: %d samples from %.6g s to %.6g s\n", d->run, d->n_rows, d->time[0],
@@ -301,7 +327,8 @@ int main(int argc, char **argv)
 {
     const char *csv = NULL, *svg = NULL;
     const struct options_entry entries[] = {
-        {"csv", 0, OPTIONS_TEXT, &csv, "FILE", "writes all samples as comma-separated values", NULL},
+        {"csv", 0, OPTIONS_TEXT, &csv, "FILE", "writes all samples as comma-separated values",
+         NULL},
         {"svg", 0, OPTIONS_TEXT, &svg, "FILE", "draws mass and rate over time", NULL},
     };
     const struct options_page page = {
@@ -312,7 +339,10 @@ int main(int argc, char **argv)
         "\n"
         "Exit status: 0 shown; 1 nothing to show (no section, fewer than two samples); 2 bad arguments;\n"
         "4 a file cannot be read or written.\n",
-        sizeof entries / sizeof *entries, entries, 1, 1};
+        sizeof entries / sizeof *entries,
+        entries,
+        1,
+        1};
     int n;
     int status = options_read(&page, argc, argv, &n);
     if (status != OPTIONS_GO_ON)
