@@ -2,8 +2,8 @@
  * Linked into every program of the sanitize flavour, so that leaks reported are leaks of ours.
  *
  * Open MPI unloads its plug-ins before the leak check, which then cannot name who allocated;
- * with a dlclose that does nothing they stay.  What Open MPI itself never frees is suppressed
- * by name.
+ * with a dlclose that does nothing they stay.  What Open MPI itself never frees, and HDF5 when
+ * it meets a damaged file, is suppressed by name.
  */
 int dlclose(void *handle);
 const char *__asan_default_options(void);
@@ -25,6 +25,7 @@ const char *__lsan_default_suppressions(void)
     return "leak:libopen-pal\n"
            "leak:libopen-rte\n"
            "leak:libmpi.so\n"
+           "leak:libhdf5\n"
            "leak:libpmix\n"
            "leak:libhwloc\n"
            "leak:libevent\n"

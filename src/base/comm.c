@@ -116,6 +116,8 @@ void comm_mail_begin(struct comm_mail *mail)
 void comm_mail_pack(struct comm_mail *mail, int to_rank, const void *bytes, size_t n)
 {
     struct comm_box *box = &mail->out[to_rank];
+    if (n == 0)
+        return;
     ARRAY_GROW(box->bytes, box->n + n, box->capacity);
     memcpy(box->bytes + box->n, bytes, n);
     box->n += n;
@@ -161,6 +163,8 @@ void comm_mail_unpack(struct comm_mail *mail, int from_rank, void *bytes, size_t
     struct comm_box *box = &mail->in[from_rank];
     CHECK(box->read + n <= box->n, "rank %d sent %zu bytes, %zu more are asked for", from_rank,
           box->n, n);
+    if (n == 0)
+        return;
     memcpy(bytes, box->bytes + box->read, n);
     box->read += n;
 }
