@@ -1,15 +1,10 @@
 /*
  * Contacts of spheres with rigid bodies: see facet_contact.h.
  *
- * Each step goes through the list sphere by sphere and body by body.  Of such a group most
- * features do not touch, which their distance says at once; for the few that do it is decided
- *   1 which stand: the deepest first, and it silences all that are the same contact;
- *   2 which memory passes on: what a feature held that stands no more goes to the one that
- *     begins to stand with nearly the same normal;
- *   3 what they do to each other: the contact law, in ascending order of features.
- * Only state and geometry enter, so the list may hold anything besides what touches.
- *
- * Drawback: one contact at a time, not blocks of them as between spheres.
+ * Each step goes through the list sphere by sphere and body by body.  The local search says which
+ * contacts of such a group act; these, and those that end, are gathered into a batch, in order, for
+ * which the law is then taken at once; what comes of it is added contact by contact in the same
+ * order.  So neither the list nor the size of a batch shows in the result.
  */
 #include "contact/facet_contact.h"
 
@@ -17,25 +12,28 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/exact_four.h"
 #include "base/report.h"
+#include "contact/facet_kernel.h"
+#include "contact/facet_local.h"
 #include "contact/facet_tree.h"
 #include "model/body.h"
 #include "model/material.h"
 #include "model/sphere.h"
-#include "physics/contact_geometry.h"
 #include "physics/contact_law.h"
 
-static const double SAME_NORMAL = 0.9659258262890683; /* cos 15 deg */
-static const double HOLDS_ON = 1.01; /* a standing contact counts as this much deeper */
-static const double IN_PLANE =
-    1e-6; /* height over a tangent plane that counts as in it, in radii */
+enum { MERGE_AFTER = 1 << 20 }; /* terms that quick sums hold at most */
 
-/* A feature that touches in this step. */
-struct touch {
-    int entry;
-    bool settled, stands;
-    double claim; /* its overlap, more if it stood before [m] */
-    struct contact_geometry at;
+/* Whose a contact of the batch is, and where. */
+struct acting {
+    int entry, sphere, body;
+    struct vec3 point; /* [m] */
+    struct vec3 wall;  /* velocity of the body there [m/s] */
+};
+
+/* Quick sums of a body: force and nothing, torque and work. */
+struct quick_load {
+    struct exact_four force, torque;
 };
 
 struct facet_work {
@@ -44,12 +42,13 @@ struct facet_work {
     struct facet_tree_found found;
     int next_capacity;
     struct facet_contact *next; /* the list that is being made */
-    int group_capacity;
-    struct touch *touches;
-    int *ended; /* entries that hold history and do not stand */
+    struct facet_local local;
+    struct facet_kernel_batch batch;
+    struct acting acting[FACET_KERNEL_BATCH];
+    struct quick_load *loads; /* one a body */
 };
 
-/* What a step's local search and law need, and one sphere's group of them. */
+/* What a step's contacts need. */
 struct step {
     struct facet_contacts *facets;
     struct spheres *spheres;
@@ -57,16 +56,6 @@ struct step {
     const struct materials *materials;
     double dt;
     bool ledger;
-};
-
-struct group {
-    int sphere, begin, end; /* entries */
-    const struct body *body;
-    struct body_load *load;
-    const struct material_pair *pair;
-    struct vec3 centre;
-    double radius;
-    int n_touches, n_ended;
 };
 
 static bool holds_history(const struct facet_contact *contact)
@@ -83,8 +72,9 @@ void facet_contacts_init(struct facet_contacts *facets, int n_bodies)
 {
     *facets = (struct facet_contacts){.n_bodies = n_bodies};
     facets->loads = array_allocate((size_t)n_bodies, sizeof *facets->loads);
-    facets->work = array_allocate(1, sizeof *facets->work);
+    facets->work = array_allocate_rows(1, sizeof *facets->work);
     facets->work->trees = array_allocate((size_t)n_bodies, sizeof *facets->work->trees);
+    facets->work->loads = array_allocate((size_t)n_bodies, sizeof *facets->work->loads);
 }
 
 void facet_contacts_clear(struct facet_contacts *facets)
@@ -95,8 +85,8 @@ void facet_contacts_clear(struct facet_contacts *facets)
     free(work->trees);
     free(work->found.features);
     free(work->next);
-    free(work->touches);
-    free(work->ended);
+    free(work->loads);
+    facet_local_clear(&work->local);
     free(work);
     free(facets->list);
     free(facets->loads);
@@ -258,101 +248,88 @@ void facet_contacts_restore(struct facet_contacts *facets, int n,
     exchange_lists(facets, n_next);
 }
 
-/* ---- Local search ----------------------------------------------------------------------------- */
+/* ---- Step ------------------------------------------------------------------------------------- */
 
-static void find_touches(const struct step *step, struct group *group)
+static double size_of(double x)
 {
-    struct facet_work *work = step->facets->work;
-    const struct mesh *mesh = &group->body->mesh;
-    for (int k = group->begin; k < group->end; k++) {
-        const struct facet_contact *contact = &step->facets->list[k];
-        struct touch *touch = &work->touches[group->n_touches];
-        if (contact_geometry_touches(mesh, contact->feature, group->centre, group->radius,
-                                     &touch->at)) {
-            const double overlap = group->radius - touch->at.distance;
-            touch->entry = k;
-            touch->claim = holds_history(contact) ? HOLDS_ON * overlap : overlap;
-            touch->settled = touch->stands = false;
-            group->n_touches++;
-        } else if (holds_history(contact)) {
-            work->ended[group->n_ended++] = k;
-        }
+    return x < 0.0 ? -x : x;
+}
+
+static void merge_loads(struct facet_contacts *facets, int b)
+{
+    struct quick_load *quick = &facets->work->loads[b];
+    struct body_load *load = &facets->loads[b];
+    for (int x = 0; x < 3; x++) {
+        exact_four_merge(&quick->force, x, &load->force[x]);
+        exact_four_merge(&quick->torque, x, &load->torque[x]);
     }
+    exact_four_merge(&quick->torque, 3, &load->work);
+    memset(quick, 0, sizeof *quick);
 }
 
-/* Is `other` the same contact as the one that stands: nearly the same normal, or nothing of it rises
- * above the plane that the standing one touches? */
-static bool is_same_contact(const struct touch *standing, const struct touch *other,
-                            double radius)
+/* Gives a body the force on it, its torque and the work of its motion.  `force` becomes what the exact
+ * sums took, so that the sphere's is the opposite to the last bit. */
+static void load_body(const struct step *step, const struct acting *acting, double force[4])
 {
-    const struct vec3 apart = vec3_sub(other->at.point, standing->at.point);
-    return vec3_dot(standing->at.normal, other->at.normal) > SAME_NORMAL ||
-           vec3_dot(standing->at.normal, apart) <= IN_PLANE * radius;
-}
-
-/* The deepest stands and silences its like, then the deepest of the rest. */
-static void choose_standing(const struct step *step, struct group *group)
-{
-    struct facet_work *work = step->facets->work;
-    struct touch *touches = work->touches;
-    for (;;) {
-        struct touch *deepest = NULL;
-        for (int t = 0; t < group->n_touches; t++)
-            if (!touches[t].settled && (deepest == NULL || touches[t].claim > deepest->claim))
-                deepest = &touches[t];
-        if (deepest == NULL)
-            break;
-        deepest->settled = deepest->stands = true;
-        for (int t = 0; t < group->n_touches; t++)
-            if (!touches[t].settled && is_same_contact(deepest, &touches[t], group->radius))
-                touches[t].settled = true;
+    struct quick_load *load = &step->facets->work->loads[acting->body];
+    const struct vec3 p = acting->point, path = vec3_scale(step->dt, acting->wall);
+    const double size = size_of(force[0]) + size_of(force[1]) + size_of(force[2]);
+    const double arm = size_of(p.x) + size_of(p.y) + size_of(p.z);
+    const double way = size_of(path.x) + size_of(path.y) + size_of(path.z);
+    if (!(size * (1.0 + arm + way) < EXACT_FOUR_LIMIT)) {
+        /* Something has run away: the sum takes note of it, as it does of single terms. */
+        step->facets->loads[acting->body].force[0].overflow++;
+        force[0] = force[1] = force[2] = 0.0;
+        return;
     }
-    for (int t = 0; t < group->n_touches; t++)
-        if (!touches[t].stands && holds_history(&step->facets->list[touches[t].entry]))
-            work->ended[group->n_ended++] = touches[t].entry;
+    exact_four_add(&load->force, force, force);
+    const struct vec3 taken = {force[0], force[1], force[2]};
+    const struct vec3 torque = vec3_cross(p, taken);
+    double others[4] = {torque.x, torque.y, torque.z, -vec3_dot(taken, path)};
+    exact_four_add(&load->torque, others, others);
+    if (load->force.n_terms >= MERGE_AFTER)
+        merge_loads(step->facets, acting->body);
 }
 
-/* The tangential force of the old contact, turned into the new tangent plane, its size kept. */
-static void turn_history(double *history, struct vec3 normal)
+/* Adds what contact k of the batch does to its sphere and its body. */
+static void press(const struct step *step, int k)
 {
-    const struct vec3 force = vec3_of(history);
-    const struct vec3 flat = vec3_axpy(force, -vec3_dot(force, normal), normal);
-    const double size = vec3_norm(force), flat_size = vec3_norm(flat);
-    const double scale = flat_size > 0.0 ? size / flat_size : 0.0;
-    history[0] = scale * flat.x;
-    history[1] = scale * flat.y;
-    history[2] = scale * flat.z;
-}
+    const struct facet_kernel_batch *batch = &step->facets->work->batch;
+    const struct acting *acting = &step->facets->work->acting[k];
+    const int i = acting->sphere;
+    const struct vec3 n = {batch->normal[0][k], batch->normal[1][k], batch->normal[2][k]};
+    const struct vec3 grip = {batch->grip[0][k], batch->grip[1][k], batch->grip[2][k]};
+    const struct vec3 torque =
+        vec3_scale(-sphere_radius(step->spheres, i), vec3_cross(n, grip));
+    double force[4] = {batch->push[k] * n.x + grip.x, batch->push[k] * n.y + grip.y,
+                       batch->push[k] * n.z + grip.z, 0.0}; /* on the body [N] */
+    load_body(step, acting, force);
 
-/* What features held that stand no more passes to those that begin to stand in their place. */
-static void hand_over(const struct step *step, const struct group *group)
-{
-    struct facet_work *work = step->facets->work;
-    for (int e = 0; e < group->n_ended; e++) {
-        struct facet_contact *old = &step->facets->list[work->ended[e]];
-        const struct contact_geometry was =
-            contact_geometry_closest(&group->body->mesh, old->feature, group->centre);
-        struct touch *heir = NULL;
-        double closest = SAME_NORMAL;
-        for (int t = 0; t < group->n_touches; t++) {
-            struct touch *touch = &work->touches[t];
-            const double turn = vec3_dot(was.normal, touch->at.normal);
-            if (touch->stands && turn > closest &&
-                !holds_history(&step->facets->list[touch->entry])) {
-                heir = touch;
-                closest = turn;
-            }
-        }
-        if (heir == NULL)
-            continue;
-        double *history = step->facets->list[heir->entry].history;
-        memcpy(history, old->history, sizeof old->history);
-        memset(old->history, 0, sizeof old->history);
-        turn_history(history, heir->at.normal);
+    double *row = step->spheres->force[i].lane;
+    row[0] -= force[0];
+    row[1] -= force[1];
+    row[2] -= force[2];
+    row[4] += torque.x;
+    row[5] += torque.y;
+    row[6] += torque.z;
+    if (step->ledger) {
+        row[3] += batch->lost_friction[k];
+        row[7] += batch->lost_damping[k];
+        step->spheres->dissipated_tangential[i] += batch->lost_law[k];
     }
+    double *history = step->facets->list[acting->entry].history;
+    for (int h = 0; h < CONTACT_LANES; h++)
+        history[h] = batch->history[h][k];
 }
 
-/* ---- Law -------------------------------------------------------------------------------------- */
+static void empty_batch(const struct step *step)
+{
+    struct facet_kernel_batch *batch = &step->facets->work->batch;
+    facet_kernel_apply(batch, step->dt, step->ledger);
+    for (int k = 0; k < batch->n; k++)
+        press(step, k);
+    batch->n = 0;
+}
 
 static struct vec3 wall_velocity(const struct body *body, struct vec3 point)
 {
@@ -362,151 +339,72 @@ static struct vec3 wall_velocity(const struct body *body, struct vec3 point)
     return vec3_add(body->velocity_now, vec3_cross(body->spin_now, arm));
 }
 
-/* The sphere is the first of the two, the wall the second. */
-static struct contact_law_meeting meet(const struct step *step, const struct group *group,
-                                       const struct contact_geometry *at, struct vec3 wall)
+/* Puts a contact into the batch; one that ends has no overlap, and what its spring still held is
+ * counted as lost. */
+static void add_contact(const struct step *step, int entry, const struct contact_geometry *at,
+                        double overlap)
 {
     const struct spheres *spheres = step->spheres;
-    const double *spin = spheres->spin[group->sphere].lane;
-    const struct vec3 normal = vec3_scale(-1.0, at->normal);
+    struct facet_kernel_batch *batch = &step->facets->work->batch;
+    if (batch->n == FACET_KERNEL_BATCH)
+        empty_batch(step);
+    const int k = batch->n++;
+    const struct facet_contact *contact = &step->facets->list[entry];
+    const struct body *body = &step->bodies->list[contact->body];
+    const struct material_pair *pair =
+        &step->materials
+             ->pairs[spheres->material[contact->sphere] * step->materials->n + body->material];
+    const double *spin = spheres->spin[contact->sphere].lane;
+    const struct vec3 normal = vec3_scale(-1.0, at->normal);       /* sphere to body */
     const struct vec3 rolling = vec3_cross(vec3_of(spin), normal); /* R w x n [m/s] */
     const struct vec3 surface =
-        vec3_add(vec3_of(sphere_velocity(spheres, group->sphere)), rolling);
-    const double overlap = group->radius - at->distance;
-    return (struct contact_law_meeting){
-        .normal = {normal.x, normal.y, normal.z},
-        .velocity = {wall.x - surface.x, wall.y - surface.y, wall.z - surface.z},
-        .overlap = overlap > 0.0 ? overlap : 0.0,
-        .inverse_radius = spin[3],
-        .inverse_mass = spin[7],
-    };
-}
+        vec3_add(vec3_of(sphere_velocity(spheres, contact->sphere)), rolling);
+    const struct vec3 wall = wall_velocity(body, at->point);
+    const struct vec3 velocity = vec3_sub(wall, surface);
+    const double normals[3] = {normal.x, normal.y, normal.z};
+    const double velocities[3] = {velocity.x, velocity.y, velocity.z};
 
-static void count_losses(const struct step *step, int sphere,
-                         const struct contact_law_result *result)
-{
-    double *force = step->spheres->force[sphere].lane;
-    force[3] += result->lost_friction;
-    force[7] += result->lost_damping;
-    step->spheres->dissipated_tangential[sphere] += result->lost_law;
-}
-
-/* Gives the body its force and torque and returns the force on the sphere, which is minus what the
- * body's exact sum took. */
-static struct vec3 share_force(struct body_load *load, const double on_body[3],
-                               struct vec3 point)
-{
-    const struct vec3 taken = {
-        exact_sum_add(&load->force[0], on_body[0]),
-        exact_sum_add(&load->force[1], on_body[1]),
-        exact_sum_add(&load->force[2], on_body[2]),
-    };
-    const struct vec3 torque = vec3_cross(point, taken);
-    exact_sum_add(&load->torque[0], torque.x);
-    exact_sum_add(&load->torque[1], torque.y);
-    exact_sum_add(&load->torque[2], torque.z);
-    return vec3_scale(-1.0, taken);
-}
-
-static void press(const struct step *step, const struct group *group, const struct touch *touch)
-{
-    double *history = step->facets->list[touch->entry].history;
-    const struct vec3 wall = wall_velocity(group->body, touch->at.point);
-    const struct contact_law_meeting meeting = meet(step, group, &touch->at, wall);
-    struct contact_law_result result;
-    contact_law_scalar(&meeting, group->pair, step->dt, step->ledger, history, &result);
-
-    const double *n = meeting.normal, *t = result.tangential;
-    const double on_body[3] = {result.normal * n[0] + t[0], result.normal * n[1] + t[1],
-                               result.normal * n[2] + t[2]}; /* [N] */
-    const struct vec3 force = share_force(group->load, on_body, touch->at.point);
-    const struct vec3 torque =
-        vec3_scale(-group->radius, vec3_cross(vec3_of(n), vec3_of(t))); /* [N m] */
-    double *row = step->spheres->force[group->sphere].lane;
-    row[0] += force.x;
-    row[1] += force.y;
-    row[2] += force.z;
-    row[4] += torque.x;
-    row[5] += torque.y;
-    row[6] += torque.z;
-    if (group->body->moves)
-        exact_sum_add(&group->load->work, vec3_dot(force, wall) * step->dt);
-    if (step->ledger)
-        count_losses(step, group->sphere, &result);
-    const double overlap = meeting.overlap * meeting.inverse_radius;
-    if (overlap > step->facets->overlap_max)
-        step->facets->overlap_max = overlap;
-}
-
-/* The end of a contact: what its spring still held is lost. */
-static void release(const struct step *step, const struct group *group, int entry)
-{
-    struct facet_contact *contact = &step->facets->list[entry];
-    if (!holds_history(contact))
-        return; /* handed over */
-    if (step->ledger) {
-        const struct contact_geometry at =
-            contact_geometry_closest(&group->body->mesh, contact->feature, group->centre);
-        const struct vec3 wall = wall_velocity(group->body, at.point);
-        struct contact_law_meeting meeting = meet(step, group, &at, wall);
-        meeting.overlap = 0.0;
-        struct contact_law_result result;
-        contact_law_scalar(&meeting, group->pair, step->dt, true, contact->history, &result);
-        count_losses(step, group->sphere, &result);
+    step->facets->work->acting[k] =
+        (struct acting){entry, contact->sphere, contact->body, at->point, wall};
+    for (int x = 0; x < 3; x++) {
+        batch->normal[x][k] = normals[x];
+        batch->velocity[x][k] = velocities[x];
     }
-    memset(contact->history, 0, sizeof contact->history);
+    batch->overlap[k] = overlap;
+    batch->inverse_radius[k] = spin[3];
+    batch->inverse_mass[k] = spin[7];
+    batch->pair_normal[k] = pair->normal;
+    batch->pair_tangential[k] = pair->tangential;
+    batch->pair_damping[k] = pair->damping;
+    batch->pair_damping_ratio[k] = pair->damping_ratio;
+    batch->pair_friction[k] = pair->friction;
+    for (int h = 0; h < CONTACT_LANES; h++)
+        batch->history[h][k] = contact->history[h];
+    const double relative = overlap * spin[3];
+    if (relative > step->facets->overlap_max)
+        step->facets->overlap_max = relative;
 }
 
-static void apply_group(const struct step *step, struct group *group)
+/* The contacts of one sphere with one body: entries begin to end. */
+static void gather_group(const struct step *step, int begin, int end)
 {
-    struct facet_work *work = step->facets->work;
-    find_touches(step, group);
-    if (group->n_touches > 1)
-        choose_standing(step, group);
-    else if (group->n_touches == 1)
-        work->touches[0].stands = true;
-    if (group->n_ended > 0 && group->n_touches > 0)
-        hand_over(step, group);
-    for (int t = 0; t < group->n_touches; t++)
-        if (work->touches[t].stands)
-            press(step, group, &work->touches[t]);
-    for (int e = 0; e < group->n_ended; e++)
-        release(step, group, work->ended[e]);
-}
-
-/* The entries from `begin` on that belong to the same sphere and body. */
-static struct group group_at(const struct step *step, int begin)
-{
-    const struct facet_contacts *facets = step->facets;
-    const struct facet_contact *first = &facets->list[begin];
-    const int i = first->sphere, b = first->body;
-    int end = begin + 1;
-    while (end < facets->n && facets->list[end].sphere == i && facets->list[end].body == b)
-        end++;
-    const struct body *body = &step->bodies->list[b];
-    const struct materials *materials = step->materials;
-    return (struct group){
-        .sphere = i,
-        .begin = begin,
-        .end = end,
-        .body = body,
-        .load = &facets->loads[b],
-        .pair = &materials->pairs[step->spheres->material[i] * materials->n + body->material],
-        .centre = vec3_of(sphere_position(step->spheres, i)),
-        .radius = sphere_radius(step->spheres, i),
-    };
-}
-
-static void reserve_group(struct facet_work *work, int n)
-{
-    if (n <= work->group_capacity)
-        return;
-    const size_t capacity = array_capacity((size_t)work->group_capacity, (size_t)n);
-    free(work->touches);
-    free(work->ended);
-    work->touches = array_allocate(capacity, sizeof *work->touches);
-    work->ended = array_allocate(capacity, sizeof *work->ended);
-    work->group_capacity = (int)capacity;
+    struct facet_contact *group = &step->facets->list[begin];
+    struct facet_local *local = &step->facets->work->local;
+    const struct mesh *mesh = &step->bodies->list[group->body].mesh;
+    const struct vec3 centre = vec3_of(sphere_position(step->spheres, group->sphere));
+    const double radius = sphere_radius(step->spheres, group->sphere);
+    facet_local_search(local, group, end - begin, mesh, centre, radius);
+    for (int t = 0; t < local->n_touches; t++) {
+        const struct facet_local_touch *touch = &local->touches[t];
+        if (touch->stands)
+            add_contact(step, begin + touch->entry, &touch->at, radius - touch->at.distance);
+    }
+    for (int e = 0; e < local->n_ended; e++) {
+        struct facet_contact *ended = &group[local->ended[e]];
+        const struct contact_geometry at =
+            contact_geometry_closest(mesh, ended->feature, centre);
+        add_contact(step, begin + local->ended[e], &at, 0.0);
+    }
 }
 
 void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres,
@@ -514,13 +412,18 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
                           double dt, bool ledger)
 {
     const struct step step = {facets, spheres, bodies, materials, dt, ledger};
+    const struct facet_contact *list = facets->list;
     facets->overlap_max = 0.0;
-    for (int k = 0; k < facets->n;) {
-        struct group group = group_at(&step, k);
-        reserve_group(facets->work, group.end - group.begin);
-        apply_group(&step, &group);
-        k = group.end;
+    for (int k = 0, end; k < facets->n; k = end) {
+        for (end = k + 1; end < facets->n; end++)
+            if (list[end].sphere != list[k].sphere || list[end].body != list[k].body)
+                break;
+        gather_group(&step, k, end);
     }
+    empty_batch(&step);
+    for (int b = 0; b < facets->n_bodies; b++)
+        if (facets->work->loads[b].force.n_terms > 0)
+            merge_loads(facets, b);
 }
 
 void facet_contacts_elastic_energy(const struct facet_contacts *facets,

@@ -151,6 +151,13 @@ static void add_feature(struct facet_tree_found *found, int feature)
     found->features[found->n++] = feature;
 }
 
+static void add_if_near(const struct mesh *mesh, int feature, struct vec3 centre, double reach,
+                        struct facet_tree_found *found)
+{
+    if (contact_geometry_reaches(mesh, feature, centre, reach))
+        add_feature(found, feature);
+}
+
 /* A face that is near, and what is near of its border, each edge and vertex with its first face. */
 static void add_face(const struct facet_tree *tree, const struct mesh *mesh, int f,
                      struct vec3 centre, double reach, struct facet_tree_found *found)
@@ -158,14 +165,13 @@ static void add_face(const struct facet_tree *tree, const struct mesh *mesh, int
     const struct mesh_face *face = &mesh->faces[f];
     add_feature(found, f);
     for (int k = 0; k < face->n; k++) {
-        const int edge = mesh->n_faces + face->edges[k];
-        const int vertex = mesh->n_faces + mesh->n_edges + face->vertices[k];
-        if (mesh->edges[face->edges[k]].faces[0] == f &&
-            contact_geometry_reaches(mesh, edge, centre, reach))
-            add_feature(found, edge);
-        if (tree->vertex_face[face->vertices[k]] == f &&
-            contact_geometry_reaches(mesh, vertex, centre, reach))
-            add_feature(found, vertex);
+        if (!contact_geometry_reaches_side(mesh, f, k, centre, reach))
+            continue;
+        const int edge = face->edges[k], vertex = face->vertices[k];
+        if (mesh->edges[edge].faces[0] == f)
+            add_if_near(mesh, mesh->n_faces + edge, centre, reach, found);
+        if (tree->vertex_face[vertex] == f)
+            add_if_near(mesh, mesh->n_faces + mesh->n_edges + vertex, centre, reach, found);
     }
 }
 

@@ -276,6 +276,7 @@ void mesh_build(struct mesh *mesh, int n_vertices, const struct vec3 *vertices, 
     for (int v = 0; v < mesh->n_vertices; v++)
         mesh->place[v] = mesh->reference[v];
     mesh->face_normal = array_allocate((size_t)mesh->n_faces, sizeof *mesh->face_normal);
+    mesh->face_borders = array_allocate_rows((size_t)mesh->n_faces, sizeof *mesh->face_borders);
     mesh_update(mesh);
 }
 
@@ -286,6 +287,7 @@ void mesh_clear(struct mesh *mesh)
     free(mesh->edges);
     free(mesh->faces);
     free(mesh->face_normal);
+    free(mesh->face_borders);
     free(mesh->edge_begin);
     free(mesh->edge_list);
     *mesh = (struct mesh){0};
@@ -294,7 +296,16 @@ void mesh_clear(struct mesh *mesh)
 void mesh_update(struct mesh *mesh)
 {
     for (int f = 0; f < mesh->n_faces; f++) {
-        const struct vec3 area = face_area(&mesh->faces[f], mesh->place);
-        mesh->face_normal[f] = vec3_scale(1.0 / vec3_norm(area), area);
+        const struct mesh_face *face = &mesh->faces[f];
+        const struct vec3 area = face_area(face, mesh->place);
+        const struct vec3 normal = vec3_scale(1.0 / vec3_norm(area), area);
+        mesh->face_normal[f] = normal;
+        for (int k = 0; k < face->n; k++) {
+            const struct vec3 from = mesh->place[face->vertices[k]];
+            const struct vec3 to = mesh->place[face->vertices[k + 1 < face->n ? k + 1 : 0]];
+            const struct vec3 along = vec3_sub(to, from);
+            mesh->face_borders[f][k] =
+                (struct mesh_border){from, vec3_cross(normal, along), vec3_dot(along, along)};
+        }
     }
 }

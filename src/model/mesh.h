@@ -17,9 +17,17 @@ struct mesh_face {
     int edges[4];    /* edge k joins vertices k and k+1 */
 };
 
+/* Side k of a face: from vertex k along the edge, its own cache line. */
+struct mesh_border {
+    struct vec3 from;      /* [m] */
+    struct vec3 inward;    /* in the face's plane, as long as the side [m] */
+    double length_squared; /* [m2] */
+} __attribute__((aligned(64)));
+
 struct mesh_edge {
     int vertices[2];
-    int faces[2]; /* adjoining faces; -1 where there is none (a free edge).  An edge with more than two
+    int faces
+        [2]; /* adjoining faces; -1 where there is none (a free edge).  An edge with more than two
                      faces keeps the first two in face order; the mesh check reports it. */
 };
 
@@ -31,6 +39,7 @@ struct mesh {
     struct mesh_face *faces;
     /* Derived from `place` by mesh_update(): */
     struct vec3 *face_normal; /* unit normals */
+    struct mesh_border (*face_borders)[4];
     /* Edges at a vertex: edge_list[edge_begin[v] .. edge_begin[v+1]-1] */
     int *edge_begin, *edge_list;
 };

@@ -29,26 +29,15 @@ static inline struct segment edge_segment(const struct mesh *mesh, int edge, str
     return s;
 }
 
-struct border {
-    double inside; /* how far the centre is inside side k of the face, times its length [m2] */
-    double length_squared; /* [m2] */
-};
-
-static inline struct border face_border(const struct mesh *mesh, int f, int k,
-                                        struct vec3 centre)
+/* How far the centre is inside a side of a face, times the side's length [m2]. */
+static inline double inside_border(const struct mesh_border *border, struct vec3 centre)
 {
-    const struct mesh_face *face = &mesh->faces[f];
-    const struct vec3 from = mesh->place[face->vertices[k]];
-    const struct vec3 to = mesh->place[face->vertices[k + 1 < face->n ? k + 1 : 0]];
-    const struct vec3 along = vec3_sub(to, from);
-    const struct vec3 inward = vec3_cross(mesh->face_normal[f], along);
-    return (struct border){vec3_dot(vec3_sub(centre, from), inward), vec3_dot(along, along)};
+    return vec3_dot(vec3_sub(centre, border->from), border->inward);
 }
 
 static inline double face_height(const struct mesh *mesh, int f, struct vec3 centre)
 {
-    const struct vec3 on = mesh->place[mesh->faces[f].vertices[0]];
-    return vec3_dot(vec3_sub(centre, on), mesh->face_normal[f]);
+    return vec3_dot(vec3_sub(centre, mesh->face_borders[f][0].from), mesh->face_normal[f]);
 }
 
 static inline struct contact_geometry on_face(const struct mesh *mesh, int f,
@@ -69,8 +58,8 @@ static bool face_touches(const struct mesh *mesh, int f, struct vec3 centre, dou
     if (!(height < radius && height > -radius))
         return false;
     for (int k = 0; k < mesh->faces[f].n; k++) {
-        const struct border border = face_border(mesh, f, k, centre);
-        if (goes_beyond(-border.inside, border.length_squared, SEAM * radius))
+        const struct mesh_border *border = &mesh->face_borders[f][k];
+        if (goes_beyond(-inside_border(border, centre), border->length_squared, SEAM * radius))
             return false;
     }
     *at = on_face(mesh, f, centre, height);
@@ -122,9 +111,9 @@ static bool edge_touches(const struct mesh *mesh, int edge, struct vec3 centre, 
         const int f = mesh->edges[edge].faces[k];
         if (f < 0)
             continue;
-        const struct border border =
-            face_border(mesh, f, side_of_edge(&mesh->faces[f], edge), centre);
-        if (goes_beyond(border.inside, border.length_squared, hair))
+        const struct mesh_border *border =
+            &mesh->face_borders[f][side_of_edge(&mesh->faces[f], edge)];
+        if (goes_beyond(inside_border(border, centre), border->length_squared, hair))
             return false;
     }
     *at = closest;
@@ -186,8 +175,8 @@ static bool face_reaches(const struct mesh *mesh, int f, struct vec3 centre, dou
     if (height > reach || height < -reach)
         return false;
     for (int k = 0; k < mesh->faces[f].n; k++) {
-        const struct border border = face_border(mesh, f, k, centre);
-        if (goes_beyond(-border.inside, border.length_squared, reach))
+        const struct mesh_border *border = &mesh->face_borders[f][k];
+        if (goes_beyond(-inside_border(border, centre), border->length_squared, reach))
             return false;
     }
     return true;
@@ -212,4 +201,11 @@ bool contact_geometry_reaches(const struct mesh *mesh, int feature, struct vec3 
         return edge_reaches(mesh, edge, centre, reach);
     const struct vec3 arm = vec3_sub(centre, mesh->place[edge - mesh->n_edges]);
     return !(vec3_dot(arm, arm) > reach * reach);
+}
+
+bool contact_geometry_reaches_side(const struct mesh *mesh, int face, int side,
+                                   struct vec3 centre, double reach)
+{
+    const struct mesh_border *border = &mesh->face_borders[face][side];
+    return !goes_beyond(inside_border(border, centre), border->length_squared, reach);
 }

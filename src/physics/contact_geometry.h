@@ -39,4 +39,8 @@ struct contact_geometry contact_geometry_closest(const struct mesh *mesh, int fe
 bool contact_geometry_reaches(const struct mesh *mesh, int feature, struct vec3 centre,
                               double reach);
 
+/* The same for a side of a face, its edge and its vertices; quick where the centre is well inside. */
+bool contact_geometry_reaches_side(const struct mesh *mesh, int face, int side,
+                                   struct vec3 centre, double reach);
+
 #endif
