@@ -59,7 +59,7 @@ struct contact_law_meeting {
 struct contact_law_result {
     lanes normal;        /* [N], >= 0: surfaces push, never pull */
     lanes tangential[3]; /* on the second [N] */
-    /* Energy turned to heat in the step that ends now [J]; set only with the ledger on. */
+    /* Energy turned to heat in the step that ends now [J]; 0 with the ledger off. */
     lanes lost_friction; /* by sliding */
     lanes lost_damping;  /* by both dashpots */
     lanes lost_law;      /* tangential elastic energy dropped as the stiffness changes */
@@ -212,6 +212,7 @@ LANES_INLINE void contact_law(const struct contact_law_meeting *meeting,
         work.v_t[x] = v[x] - work.v_n * n[x];
     contact_law_push(&work, meeting, pair, history, result);
     contact_law_grip(&work, meeting, pair, dt, ledger, history, result);
+    result->lost_friction = result->lost_damping = result->lost_law = lanes_all(0.0);
     if (ledger)
         contact_law_ledger(&work, meeting, pair, dt, result);
     history[CONTACT_LAW_RADIUS] = work.radius;

@@ -1,0 +1,251 @@
+/*
+ * The pair kernel: every instruction set that runs here gives the bits of a plain loop over single
+ * contacts, and leaves exact zeros where nothing touches.
+ */
+#include "check.h"
+
+#include <stdlib.h>
+
+#include "pair_scene.h"
+#include "physics/contact_law.h"
+
+enum { STEPS = 40 };
+
+/* The arithmetic of one pair, written out. */
+static struct contact_law_meeting meeting_of(const double *a, const double *b,
+                                             const double *spin_a, const double *spin_b)
+{
+    const double d[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+    const double distance = sqrt(contact_law_dot(d, d)), inverse = 1.0 / distance;
+    const double overlap = (b[3] + a[3]) - distance;
+    struct contact_law_meeting meeting = {
+        .normal = {d[0] * inverse, d[1] * inverse, d[2] * inverse},
+        .overlap = overlap > 0.0 ? overlap : 0.0,
+        .inverse_radius = spin_b[3] + spin_a[3],
+        .inverse_mass = spin_b[7] + spin_a[7],
+    };
+    const double *n = meeting.normal, half = 0.5 * meeting.overlap;
+    double s[3];
+    for (int x = 0; x < 3; x++)
+        s[x] = (spin_b[x] + spin_a[x]) - half * (spin_b[4 + x] + spin_a[4 + x]);
+    for (int x = 0; x < 3; x++) {
+        const int y = (x + 1) % 3, z = (x + 2) % 3;
+        meeting.velocity[x] = (b[4 + x] - a[4 + x]) - (s[y] * n[z] - s[z] * n[y]);
+    }
+    return meeting;
+}
+
+static void apply_one(struct pair_kernel_work *work, int k, const struct material_pair *pair,
+                      bool ledger)
+{
+    const int i = work->first[k], j = work->second[k];
+    const double *a = work->motion[i].lane, *b = work->motion[j].lane;
+    const struct contact_law_meeting meeting =
+        meeting_of(a, b, work->spin[i].lane, work->spin[j].lane);
+    const double *n = meeting.normal, relative = meeting.overlap * meeting.inverse_radius;
+    const double half = 0.5 * meeting.overlap, sum = b[3] + a[3], difference = b[7] - a[7];
+    double *f = work->force[i].lane, *g = work->force[j].lane, history[CONTACT_LANES];
+    struct contact_law_result result;
+
+    for (int lane = 0; lane < CONTACT_LANES; lane++)
+        history[lane] = work->history[lane][k];
+    contact_law_scalar(&meeting, pair, work->dt, ledger, history, &result);
+    for (int lane = 0; lane < CONTACT_LANES; lane++)
+        work->history[lane][k] = history[lane];
+    for (int x = 0; x < 3; x++) {
+        const int y = (x + 1) % 3, z = (x + 2) % 3;
+        const double turn = n[z] * result.tangential[y] - n[y] * result.tangential[z];
+        const double force = result.tangential[x] + result.normal * n[x];
+        f[x] += -force;
+        g[x] += force;
+        f[4 + x] += (0.5 * (sum - difference) - half) * turn;
+        g[4 + x] += (0.5 * (sum + difference) - half) * turn;
+    }
+    if (ledger) {
+        f[3] += 0.5 * result.lost_friction;
+        g[3] += 0.5 * result.lost_friction;
+        f[7] += 0.5 * result.lost_damping;
+        g[7] += 0.5 * result.lost_damping;
+        work->dissipated_tangential[i] += result.lost_law;
+    }
+    work->overlap_max = 0.5 * relative > work->overlap_max ? 0.5 * relative : work->overlap_max;
+}
+
+static void apply_all(struct pair_kernel_work *work, bool uniform, bool ledger)
+{
+    work->overlap_max = 0.0;
+    for (int k = 0; k < work->n_padded; k++) {
+        const int a = work->material[work->first[uniform ? 0 : k]];
+        const int b = work->material[work->second[uniform ? 0 : k]];
+        apply_one(work, k, &work->pairs[a * work->n_materials + b], ledger);
+    }
+}
+
+static void apply_mixed(struct pair_kernel_work *work)
+{
+    apply_all(work, false, false);
+}
+static void apply_mixed_ledger(struct pair_kernel_work *work)
+{
+    apply_all(work, false, true);
+}
+static void apply_uniform(struct pair_kernel_work *work)
+{
+    apply_all(work, true, false);
+}
+static void apply_uniform_ledger(struct pair_kernel_work *work)
+{
+    apply_all(work, true, true);
+}
+
+static void (*const references[2][2])(struct pair_kernel_work *) = {
+    {apply_mixed, apply_mixed_ledger}, {apply_uniform, apply_uniform_ledger}};
+
+/* What a scene must contain for the comparison to mean something. */
+struct seen {
+    int touching, apart, new, ended, sliding;
+};
+
+static void look(const struct scene *before, const struct scene *after, struct seen *seen)
+{
+    for (int k = 0; k < after->n; k++) {
+        const bool was = before->history[CONTACT_RADIUS_LANE][k] > 0.0;
+        const bool is = after->history[CONTACT_RADIUS_LANE][k] > 0.0;
+        seen->touching += is;
+        seen->apart += !is;
+        seen->new += is && !was;
+        seen->ended += was && !is;
+    }
+    for (int i = 0; i < SCENE_SPHERES; i++)
+        seen->sliding += after->force[i].lane[3] > 0.0;
+}
+
+static void compare(enum pair_kernel_isa isa, bool uniform, bool ledger, struct seen *seen)
+{
+    const struct pair_kernel kernel = pair_kernel_choose(isa, uniform, ledger);
+    static struct scene expected, got, before;
+
+    scene_fill(&expected, 17);
+    if (uniform)
+        memset(expected.material, 0, sizeof expected.material);
+    EXPECT(expected.n > 300 && expected.n < SCENE_PAIRS);
+    memcpy(&got, &expected, sizeof got);
+    for (int step = 0; step < STEPS; step++) {
+        memcpy(&before, &got, sizeof before);
+        scene_apply(&expected, references[uniform][ledger]);
+        scene_apply(&got, kernel.apply);
+        if (scene_difference(&expected, &got) != NULL)
+            CHECK_FAIL("%s: step %d: %s differs", pair_kernel_isa_name(isa), step,
+                       scene_difference(&expected, &got));
+        look(&before, &got, seen);
+        scene_move(&expected);
+        scene_move(&got);
+    }
+}
+
+TEST(all_instruction_sets_give_the_bits_of_single_contacts)
+{
+    for (int isa = PAIR_KERNEL_GENERIC; isa < PAIR_KERNEL_N_ISAS; isa++) {
+        struct seen seen = {0};
+        if (!pair_kernel_isa_runs((enum pair_kernel_isa)isa))
+            continue;
+        for (int choice = 0; choice < 4; choice++)
+            compare((enum pair_kernel_isa)isa, choice & 1, choice & 2, &seen);
+        EXPECT(seen.touching > 1000 && seen.apart > 1000);
+        EXPECT(seen.new > 100 && seen.ended > 100 && seen.sliding > 1000);
+    }
+}
+
+/* The ledger is only watching. */
+TEST(ledger_changes_no_force)
+{
+    static struct scene with, without;
+    const struct pair_kernel ledger = pair_kernel_choose(PAIR_KERNEL_AUTO, false, true);
+    const struct pair_kernel plain = pair_kernel_choose(PAIR_KERNEL_AUTO, false, false);
+
+    scene_fill(&with, 3);
+    scene_fill(&without, 3);
+    for (int step = 0; step < STEPS; step++) {
+        scene_apply(&with, ledger.apply);
+        scene_apply(&without, plain.apply);
+        scene_move(&with);
+        scene_move(&without);
+        EXPECT(memcmp(with.history, without.history, sizeof with.history) == 0);
+        EXPECT(memcmp(with.motion, without.motion, sizeof with.motion) == 0);
+        EXPECT(memcmp(with.spin, without.spin, sizeof with.spin) == 0);
+    }
+}
+
+/* Exchanging the two spheres of a pair exchanges and negates everything, to the last bit. */
+TEST(antisymmetric)
+{
+    static struct scene one, other;
+    const struct pair_kernel kernel = pair_kernel_choose(PAIR_KERNEL_AUTO, false, true);
+
+    scene_fill(&one, 5);
+    one.n = 1;
+    one.n_padded = CONTACT_PAD;
+    for (int k = 0; k < CONTACT_PAD; k++) {
+        one.first[k] = k == 0 ? 10 : SCENE_SPHERES;
+        one.second[k] = k == 0 ? 11 : SCENE_SPHERES + 1;
+    }
+    for (int x = 0; x < 3; x++)
+        one.motion[11].lane[x] = one.motion[10].lane[x] + 0.5 * one.motion[10].lane[3];
+    memcpy(&other, &one, sizeof other);
+    other.first[0] = 11;
+    other.second[0] = 10;
+    scene_apply(&one, kernel.apply);
+    scene_apply(&other, kernel.apply);
+    EXPECT(one.force[10].lane[0] != 0.0);
+    EXPECT(memcmp(one.force, other.force, sizeof one.force) == 0);
+    for (int lane = 0; lane < 3; lane++)
+        EXPECT(one.history[lane][0] == -other.history[lane][0]);
+    EXPECT(one.history[3][0] == other.history[3][0] &&
+           one.history[4][0] == other.history[4][0]);
+}
+
+TEST(apart_nothing_is_written_but_plus_zero)
+{
+    static struct scene scene;
+    static const struct sphere_row nothing[SCENE_SPHERES + 2];
+
+    for (int isa = PAIR_KERNEL_GENERIC; isa < PAIR_KERNEL_N_ISAS; isa++) {
+        if (!pair_kernel_isa_runs((enum pair_kernel_isa)isa))
+            continue;
+        scene_fill(&scene, 7);
+        for (int i = 0; i < SCENE_SPHERES; i++)
+            scene.motion[i].lane[0] += (i % 2 ? -1.0 : 1.0) * i; /* far apart, on both sides */
+        for (int k = 0; k < scene.n; k++)
+            for (int lane = 0; lane < CONTACT_LANES; lane++)
+                scene.history[lane][k] = lane == CONTACT_RADIUS_LANE ? 1e-4 : -1.0 - k;
+        scene_apply(&scene, pair_kernel_choose((enum pair_kernel_isa)isa, false, false).apply);
+        EXPECT(memcmp(scene.force, nothing, sizeof scene.force) == 0);
+        for (int lane = 0; lane < CONTACT_LANES; lane++)
+            for (int k = 0; k < scene.n_padded; k++)
+                EXPECT(scene.history[lane][k] == 0.0 && !signbit(scene.history[lane][k]));
+        EXPECT(scene.overlap_max == 0.0);
+    }
+}
+
+TEST(no_pairs_is_fine)
+{
+    static struct scene scene;
+    scene_fill(&scene, 1);
+    scene.n_padded = 0;
+    scene.overlap_max = 1.0;
+    scene_apply(&scene, pair_kernel_choose(PAIR_KERNEL_AUTO, true, true).apply);
+    EXPECT(scene.overlap_max == 0.0);
+}
+
+TEST(instruction_sets_have_names)
+{
+    EXPECT_STRING(pair_kernel_isa_name(PAIR_KERNEL_AUTO), "auto");
+    EXPECT_STRING(pair_kernel_isa_name(PAIR_KERNEL_V3), "v3");
+    EXPECT(pair_kernel_isa_runs(PAIR_KERNEL_AUTO));
+    EXPECT(pair_kernel_choose(PAIR_KERNEL_AUTO, true, true).isa != PAIR_KERNEL_AUTO);
+}
+
+int main(int argc, char **argv)
+{
+    return check_run(argc, argv);
+}
