@@ -9,9 +9,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "arguments.h"
 #include "base/array.h"
 #include "base/report.h"
-#include "options.h"
 #include "plot.h"
 #include "records.h"
 #include "sheet.h"
@@ -326,12 +326,12 @@ static int show(struct discharge *d, const char *csv, const char *svg)
 int main(int argc, char **argv)
 {
     const char *csv = NULL, *svg = NULL;
-    const struct options_entry entries[] = {
-        {"csv", 0, OPTIONS_TEXT, &csv, "FILE", "writes all samples as comma-separated values",
+    const struct arguments_entry entries[] = {
+        {"csv", 0, ARGUMENTS_TEXT, &csv, "FILE", "writes all samples as comma-separated values",
          NULL},
-        {"svg", 0, OPTIONS_TEXT, &svg, "FILE", "draws mass and rate over time", NULL},
+        {"svg", 0, ARGUMENTS_TEXT, &svg, "FILE", "draws mass and rate over time", NULL},
     };
-    const struct options_page page = {
+    const struct arguments_page page = {
         "tremie-discharge",
         "RUN [--csv FILE] [--svg FILE]",
         "Shows how many spheres and what mass passed each section of a run over time, and the rate with\n"
@@ -344,8 +344,8 @@ int main(int argc, char **argv)
         1,
         1};
     int n;
-    int status = options_read(&page, argc, argv, &n);
-    if (status != OPTIONS_GO_ON)
+    int status = arguments_read(&page, argc, argv, &n);
+    if (status != ARGUMENTS_GO_ON)
         return status;
     struct discharge d = {0};
     status = read_run(&d, argv[1]);

@@ -10,9 +10,9 @@
 #include <stdlib.h>
 #include <string.h>
 
+#include "arguments.h"
 #include "base/array.h"
 #include "base/report.h"
-#include "options.h"
 #include "records.h"
 #include "sheet.h"
 
@@ -381,11 +381,11 @@ static int show(int n_paths, char **paths, const char *csv)
 int main(int argc, char **argv)
 {
     const char *csv = NULL;
-    const struct options_entry entries[] = {
-        {"csv", 0, OPTIONS_TEXT, &csv, "FILE",
+    const struct arguments_entry entries[] = {
+        {"csv", 0, ARGUMENTS_TEXT, &csv, "FILE",
          "writes one line of comma-separated values a run", NULL},
     };
-    const struct options_page page = {
+    const struct arguments_page page = {
         "tremie-runstats",
         "RUN... [--csv FILE]",
         "Shows where the time of each run went, phase by phase over its ranks, how often it searched and\n"
@@ -399,6 +399,6 @@ int main(int argc, char **argv)
         1,
         RUNS_MOST};
     int n;
-    const int status = options_read(&page, argc, argv, &n);
-    return status == OPTIONS_GO_ON ? show(n, argv + 1, csv) : status;
+    const int status = arguments_read(&page, argc, argv, &n);
+    return status == ARGUMENTS_GO_ON ? show(n, argv + 1, csv) : status;
 }

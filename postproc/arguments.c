@@ -1,5 +1,5 @@
-/* See options.h. */
-#include "options.h"
+/* See arguments.h. */
+#include "arguments.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -8,7 +8,7 @@
 
 #include "base/report.h"
 
-static void print_entry(const struct options_entry *entry)
+static void print_entry(const struct arguments_entry *entry)
 {
     char left[64];
     const char *argument = entry->argument != NULL ? entry->argument : "";
@@ -18,12 +18,12 @@ static void print_entry(const struct options_entry *entry)
             : snprintf(left, sizeof left, "--%s %s", entry->name, argument);
     CHECK(n > 0 && (size_t)n < sizeof left, "the option %s has too long a name", entry->name);
     printf("  %-24s %s", left, entry->help);
-    for (int i = 0; entry->kind == OPTIONS_CHOICE && entry->choices[i] != NULL; i++)
+    for (int i = 0; entry->kind == ARGUMENTS_CHOICE && entry->choices[i] != NULL; i++)
         printf("%s%s", i == 0 ? ": " : ", ", entry->choices[i]);
     printf("\n");
 }
 
-static void print_help(const struct options_page *page)
+static void print_help(const struct arguments_page *page)
 {
     printf("usage: %s %s\n\n%s\n", page->tool, page->usage, page->about);
     printf("options\n");
@@ -32,11 +32,11 @@ static void print_help(const struct options_page *page)
     printf("  %-24s %s\n", "--help", "prints this page");
 }
 
-static const struct options_entry *find_entry(const struct options_page *page, const char *name,
-                                              size_t length, char letter)
+static const struct arguments_entry *find_entry(const struct arguments_page *page,
+                                                const char *name, size_t length, char letter)
 {
     for (int i = 0; i < page->n_entries; i++) {
-        const struct options_entry *entry = &page->entries[i];
+        const struct arguments_entry *entry = &page->entries[i];
         if (letter != 0
                 ? entry->letter == letter
                 : strlen(entry->name) == length && strncmp(entry->name, name, length) == 0)
@@ -45,7 +45,7 @@ static const struct options_entry *find_entry(const struct options_page *page, c
     return NULL;
 }
 
-static bool take_number(const struct options_entry *entry, const char *text)
+static bool take_number(const struct arguments_entry *entry, const char *text)
 {
     char *end;
     const double number = strtod(text, &end);
@@ -57,7 +57,7 @@ static bool take_number(const struct options_entry *entry, const char *text)
     return true;
 }
 
-static bool take_choice(const struct options_entry *entry, const char *text)
+static bool take_choice(const struct arguments_entry *entry, const char *text)
 {
     char list[256] = "";
     for (int i = 0; entry->choices[i] != NULL; i++) {
@@ -73,17 +73,17 @@ static bool take_choice(const struct options_entry *entry, const char *text)
     return false;
 }
 
-static bool take_value(const struct options_entry *entry, const char *text)
+static bool take_value(const struct arguments_entry *entry, const char *text)
 {
     switch (entry->kind) {
-    case OPTIONS_NUMBER:
+    case ARGUMENTS_NUMBER:
         return take_number(entry, text);
-    case OPTIONS_CHOICE:
+    case ARGUMENTS_CHOICE:
         return take_choice(entry, text);
-    case OPTIONS_TEXT:
+    case ARGUMENTS_TEXT:
         *(const char **)entry->value = text;
         return true;
-    case OPTIONS_FLAG:
+    case ARGUMENTS_FLAG:
         break;
     }
     *(bool *)entry->value = true;
@@ -91,7 +91,7 @@ static bool take_value(const struct options_entry *entry, const char *text)
 }
 
 /* Takes the option at argv[*i] and moves *i past what it used. */
-static bool take_option(const struct options_page *page, int argc, char **argv, int *i)
+static bool take_option(const struct arguments_page *page, int argc, char **argv, int *i)
 {
     const char *text = argv[(*i)++];
     const bool is_long = text[1] == '-';
@@ -99,18 +99,18 @@ static bool take_option(const struct options_page *page, int argc, char **argv, 
     const char *equals = is_long ? strchr(name, '=') : NULL;
     const size_t length = equals != NULL ? (size_t)(equals - name) : strlen(name);
     const bool lone_letter = !is_long && length == 1;
-    const struct options_entry *entry =
+    const struct arguments_entry *entry =
         is_long || lone_letter ? find_entry(page, name, length, lone_letter ? name[0] : 0)
                                : NULL;
     if (entry == NULL) {
         report_error("there is no option %s; see %s --help", text, page->tool);
         return false;
     }
-    if (entry->kind == OPTIONS_FLAG && equals != NULL) {
+    if (entry->kind == ARGUMENTS_FLAG && equals != NULL) {
         report_error("--%s takes no value; leave out \"%s\"", entry->name, equals);
         return false;
     }
-    if (entry->kind == OPTIONS_FLAG || equals != NULL)
+    if (entry->kind == ARGUMENTS_FLAG || equals != NULL)
         return take_value(entry, equals != NULL ? equals + 1 : "");
     if (*i >= argc) {
         report_error("--%s needs a value; see %s --help", entry->name, page->tool);
@@ -119,16 +119,16 @@ static bool take_option(const struct options_page *page, int argc, char **argv, 
     return take_value(entry, argv[(*i)++]);
 }
 
-static int check_count(const struct options_page *page, int n)
+static int check_count(const struct arguments_page *page, int n)
 {
     if (n >= page->n_least && n <= page->n_most)
-        return OPTIONS_GO_ON;
+        return ARGUMENTS_GO_ON;
     report_error("%d argument%s given; usage: %s %s", n, n == 1 ? " is" : "s are", page->tool,
                  page->usage);
     return REPORT_BAD_INPUT;
 }
 
-int options_read(const struct options_page *page, int argc, char **argv, int *n)
+int arguments_read(const struct arguments_page *page, int argc, char **argv, int *n)
 {
     *n = 0;
     for (int i = 1; i < argc; i++) {

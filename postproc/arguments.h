@@ -4,43 +4,43 @@
  * Options may stand anywhere among the other arguments, as `--name value`, `--name=value` or
  * `-o value`; `--` ends them.  What is wrong is said as `error: what; what to do`.
  */
-#ifndef TREMIE_POSTPROC_OPTIONS_H
-#define TREMIE_POSTPROC_OPTIONS_H
+#ifndef TREMIE_POSTPROC_ARGUMENTS_H
+#define TREMIE_POSTPROC_ARGUMENTS_H
 
 #include <stdbool.h>
 
-enum options_kind {
-    OPTIONS_FLAG,   /* bool */
-    OPTIONS_TEXT,   /* const char * */
-    OPTIONS_NUMBER, /* double, finite */
-    OPTIONS_CHOICE, /* int: index into `choices` */
+enum arguments_kind {
+    ARGUMENTS_FLAG,   /* bool */
+    ARGUMENTS_TEXT,   /* const char * */
+    ARGUMENTS_NUMBER, /* double, finite */
+    ARGUMENTS_CHOICE, /* int: index into `choices` */
 };
 
-struct options_entry {
+struct arguments_entry {
     const char *name; /* without the dashes */
     char letter;      /* short form; 0 when there is none */
-    enum options_kind kind;
+    enum arguments_kind kind;
     void *value;          /* where it goes; keeps what it holds when the option is absent */
     const char *argument; /* how --help calls the value */
     const char *help;
     const char *const *choices; /* NULL-terminated */
 };
 
-struct options_page {
+struct arguments_page {
     const char *tool;  /* tremie-... */
     const char *usage; /* what follows the tool's name */
     const char *about; /* lines of text, the exit statuses among them */
     int n_entries;
-    const struct options_entry *entries;
+    const struct arguments_entry *entries;
     int n_least, n_most; /* other arguments: how many there may be */
 };
 
-enum { OPTIONS_GO_ON = -1 };
+enum { ARGUMENTS_GO_ON = -1 };
 
 /*
- * Reads the command line; the other arguments are moved to argv[1..*n].  Returns OPTIONS_GO_ON, or the
+ * Reads the command line; the other arguments are moved to argv[1..*n].  Returns ARGUMENTS_GO_ON, or the
  * status to exit with: 0 after --help, 2 after a mistake, which has been said.
  */
-int options_read(const struct options_page *page, int argc, char **argv, int *n);
+int arguments_read(const struct arguments_page *page, int argc, char **argv, int *n);
 
 #endif
