@@ -1,9 +1,10 @@
 /*
- * Four exact sums side by side: exact_sum (base/exact_sum.h) where terms come four at a time and often.
+ * Four exact sums side by side: exact_sum (base/exact_sum.h) where terms come four at a time
+ * and often.
  *
- * The same limbs from the same rounding, held in vectors and merged into ordinary sums at the end, so
- * that which of the two was used shows nowhere.  The integer in a part is read from its bits: after
- * adding 1.5 2^52 units the mantissa counts them.
+ * The same limbs from the same rounding, held in vectors and merged into ordinary sums at the
+ * end, so that which of the two was used shows nowhere. The integer in a part is read from its
+ * bits: after adding 1.5 2^52 units the mantissa counts them.
  */
 #ifndef TREMIE_BASE_EXACT_FOUR_H
 #define TREMIE_BASE_EXACT_FOUR_H

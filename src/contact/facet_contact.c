@@ -1,10 +1,10 @@
 /*
  * Contacts of spheres with rigid bodies: see facet_contact.h.
  *
- * Each step goes through the list sphere by sphere and body by body.  The local search says which
- * contacts of such a group act; these, and those that end, are gathered into a batch, in order, for
- * which the law is then taken at once; what comes of it is added contact by contact in the same
- * order.  So neither the list nor the size of a batch shows in the result.
+ * Each step goes through the list sphere by sphere and body by body. The local search says
+ * which contacts of such a group act; these, and those that end, are gathered into a batch, in
+ * order, for which the law is then taken at once; what comes of it is added contact by contact
+ * in the same order. So neither the list nor the size of a batch shows in the result.
  */
 #include "contact/facet_contact.h"
 
@@ -93,7 +93,8 @@ void facet_contacts_clear(struct facet_contacts *facets)
     *facets = (struct facet_contacts){0};
 }
 
-/* ---- Global search ---------------------------------------------------------------------------- */
+/* ---- Global search
+ * ---------------------------------------------------------------------------- */
 
 static int compare_contacts(const void *a, const void *b)
 {
@@ -144,8 +145,8 @@ static void find_all_features(struct facet_tree_found *found, const struct mesh 
         found->features[k] = k;
 }
 
-/* Appends what the old list (its entries from `old` on) holds of touching contacts before this one, and
- * the contact itself, with its history if it had any. */
+/* Appends what the old list (its entries from `old` on) holds of touching contacts before this
+ * one, and the contact itself, with its history if it had any. */
 static void list_contact(struct facet_contacts *facets, struct facet_contact contact, int *old,
                          int *n)
 {
@@ -192,7 +193,8 @@ void facet_contacts_search(struct facet_contacts *facets, const struct spheres *
     exchange_lists(facets, n);
 }
 
-/* ---- Records ---------------------------------------------------------------------------------- */
+/* ---- Records
+ * ---------------------------------------------------------------------------------- */
 
 int facet_contacts_records(const struct facet_contacts *facets, const struct spheres *spheres,
                            struct facet_contact_record **records)
@@ -248,7 +250,8 @@ void facet_contacts_restore(struct facet_contacts *facets, int n,
     exchange_lists(facets, n_next);
 }
 
-/* ---- Step ------------------------------------------------------------------------------------- */
+/* ---- Step
+ * ------------------------------------------------------------------------------------- */
 
 static double size_of(double x)
 {
@@ -267,8 +270,8 @@ static void merge_loads(struct facet_contacts *facets, int b)
     memset(quick, 0, sizeof *quick);
 }
 
-/* Gives a body the force on it, its torque and the work of its motion.  `force` becomes what the exact
- * sums took, so that the sphere's is the opposite to the last bit. */
+/* Gives a body the force on it, its torque and the work of its motion. `force` becomes what the
+ * exact sums took, so that the sphere's is the opposite to the last bit. */
 static void load_body(const struct step *step, const struct acting *acting, double force[4])
 {
     struct quick_load *load = &step->facets->work->loads[acting->body];
@@ -339,8 +342,8 @@ static struct vec3 wall_velocity(const struct body *body, struct vec3 point)
     return vec3_add(body->velocity_now, vec3_cross(body->spin_now, arm));
 }
 
-/* Puts a contact into the batch; one that ends has no overlap, and what its spring still held is
- * counted as lost. */
+/* Puts a contact into the batch; one that ends has no overlap, and what its spring still held
+ * is counted as lost. */
 static void add_contact(const struct step *step, int entry, const struct contact_geometry *at,
                         double overlap)
 {

@@ -1,24 +1,26 @@
 /*
- * Contacts between spheres and the features (faces, edges, vertices) of rigid bodies, with history.
+ * Contacts between spheres and the features (faces, edges, vertices) of rigid bodies, with
+ * history.
  *
- * Global search gives, for each owned sphere, the features of each body within the sphere's radius and
- * allowance (and the body's own allowance).  Local search computes, each step, the closest point of each
- * such feature *in its own region*: a face holds what projects into it, an edge what projects onto
- * it and lies outside its adjoining faces' prisms, a vertex the rest.  So a sphere has one contact on a
- * convex edge, one a wall in a concave corner.  Contacts of one sphere with one body whose normals
- * differ by less than 15 degrees are one contact: the deeper stands, the one that holds history
- * stands until another is deeper by a hundredth of the overlap.  A contact whose point lies on or
- * behind the tangent plane of a deeper one is none: it is the edge of a neighbour in the same plane, or
- * the far side of a thin body.  History belongs to (sphere, body, feature); a feature that becomes
- * active takes over the history of the feature of the same sphere and body that was active the step
- * before, is not any more, and has nearly the same normal (rotated with the normal), so nothing
- * jumps when a sphere rolls over a seam.
+ * Global search gives, for each owned sphere, the features of each body within the sphere's
+ * radius and allowance (and the body's own allowance). Local search computes, each step, the
+ * closest point of each such feature *in its own region*: a face holds what projects into it,
+ * an edge what projects onto it and lies outside its adjoining faces' prisms, a vertex the
+ * rest. So a sphere has one contact on a convex edge, one a wall in a concave corner. Contacts
+ * of one sphere with one body whose normals differ by less than 15 degrees are one contact: the
+ * deeper stands, the one that holds history stands until another is deeper by a hundredth of
+ * the overlap. A contact whose point lies on or behind the tangent plane of a deeper one is
+ * none: it is the edge of a neighbour in the same plane, or the far side of a thin body.
+ * History belongs to (sphere, body, feature); a feature that becomes active takes over the
+ * history of the feature of the same sphere and body that was active the step before, is not
+ * any more, and has nearly the same normal (rotated with the normal), so nothing jumps when a
+ * sphere rolls over a seam.
  *
  * All of this follows from the touching contacts' history and from where things are, never from
  * what else is listed: lists made at other moments give the same bits.
  *
- * Contributions are added to the sphere's force row in order of (sphere, body, feature), before all
- * pairs.  Force, torque and work on a body are exact sums.
+ * Contributions are added to the sphere's force row in order of (sphere, body, feature), before
+ * all pairs. Force, torque and work on a body are exact sums.
  */
 #ifndef TREMIE_CONTACT_FACET_CONTACT_H
 #define TREMIE_CONTACT_FACET_CONTACT_H
@@ -34,7 +36,7 @@ struct bodies;
 struct materials;
 
 struct facet_contact {
-    int sphere;  /* storage index of an owned sphere */
+    int sphere; /* storage index of an owned sphere */
     int body;
     int feature; /* see model/mesh.h */
     double history[CONTACT_LANES];
@@ -47,11 +49,12 @@ struct facet_contact_record {
     double history[CONTACT_LANES];
 };
 
-/* What each body felt, summed over steps since the last sample; exact, so ranks' shares add up. */
+/* What each body felt, summed over steps since the last sample; exact, so ranks' shares add
+ * up. */
 struct body_load {
     struct exact_sum force[3];  /* [N], summed over steps */
     struct exact_sum torque[3]; /* about the origin [N m], summed over steps */
-    struct exact_sum work;      /* done by the body's prescribed motion on spheres [J], since step 0 */
+    struct exact_sum work;      /* of the body's motion on spheres [J], since step 0 */
 };
 
 struct facet_contacts {
@@ -59,38 +62,43 @@ struct facet_contacts {
     struct facet_contact *list; /* sorted by (sphere's canonical order, body, feature) */
     struct body_load *loads;    /* one a body */
     int n_bodies;
-    double overlap_max;         /* largest overlap/radius of the last step */
-    struct facet_work *work;    /* search trees and scratch, private to facet_contact.c */
+    double overlap_max;      /* largest overlap/radius of the last step */
+    struct facet_work *work; /* search trees and scratch, private to facet_contact.c */
 };
 
 void facet_contacts_init(struct facet_contacts *facets, int n_bodies);
 void facet_contacts_clear(struct facet_contacts *facets);
 
-/* Global search: lists the features near each owned sphere (storage order is canonical order), within
- * radius + spheres->allowance + body_allowance[body]; all_pairs lists all.  Touching contacts of the
- * old list stay, with their history, for the same storage index.  Local. */
+/* Global search: lists the features near each owned sphere (storage order is canonical order),
+ * within radius + spheres->allowance + body_allowance[body]; all_pairs lists all. Touching
+ * contacts of the old list stay, with their history, for the same storage index. Local. */
 void facet_contacts_search(struct facet_contacts *facets, const struct spheres *spheres,
-                           const struct bodies *bodies, const double *body_allowance, bool all_pairs);
+                           const struct bodies *bodies, const double *body_allowance,
+                           bool all_pairs);
 
-/* Records of all touching contacts; *records is grown (free it); returns their number.  Local. */
+/* Records of all touching contacts; *records is grown (free it); returns their number.
+ * Local. */
 int facet_contacts_records(const struct facet_contacts *facets, const struct spheres *spheres,
                            struct facet_contact_record **records);
-/* Empties the list, before spheres move in memory: what is to be kept is kept as records.  Local. */
+/* Empties the list, before spheres move in memory: what is to be kept is kept as records.
+ * Local. */
 void facet_contacts_forget(struct facet_contacts *facets);
-/* Puts history into the list, which may be empty yet and then grows; sphere_of_record gives the storage
- * index of record k's sphere (-1: not owned here, left out).  Local. */
-void facet_contacts_restore(struct facet_contacts *facets, int n, const struct facet_contact_record *records,
+/* Puts history into the list, which may be empty yet and then grows; sphere_of_record gives the
+ * storage index of record k's sphere (-1: not owned here, left out). Local. */
+void facet_contacts_restore(struct facet_contacts *facets, int n,
+                            const struct facet_contact_record *records,
                             const int *sphere_of_record);
 
-/* Local search and law: adds forces and torques to spheres->force, updates history, body loads and
- * overlap_max.  dt in s.  Local. */
-void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres, const struct bodies *bodies,
-                          const struct materials *materials, double dt, bool ledger);
+/* Local search and law: adds forces and torques to spheres->force, updates history, body loads
+ * and overlap_max. dt in s. Local. */
+void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres,
+                          const struct bodies *bodies, const struct materials *materials,
+                          double dt, bool ledger);
 
-/* Elastic energy stored in facet contacts, added to `sum` (each once, by the sphere's owner), as of
- * the last facet_contacts_apply().  Local. */
-void facet_contacts_elastic_energy(const struct facet_contacts *facets, const struct spheres *spheres,
-                                   const struct bodies *bodies, const struct materials *materials,
-                                   struct exact_sum *sum);
+/* Elastic energy stored in facet contacts, added to `sum` (each once, by the sphere's owner),
+ * as of the last facet_contacts_apply(). Local. */
+void facet_contacts_elastic_energy(const struct facet_contacts *facets,
+                                   const struct spheres *spheres, const struct bodies *bodies,
+                                   const struct materials *materials, struct exact_sum *sum);
 
 #endif

@@ -1,5 +1,5 @@
-/* The contact law in vectors over a batch: see facet_kernel.h.  Lanes beyond the last contact repeat
- * it; nobody reads what they give. */
+/* The contact law in vectors over a batch: see facet_kernel.h. Lanes beyond the last contact
+ * repeat it; nobody reads what they give. */
 #define LANES_WIDTH 2
 
 #include "contact/facet_kernel.h"

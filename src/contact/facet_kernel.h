@@ -1,8 +1,8 @@
 /*
  * The contact law for a batch of contacts between spheres and facets.
  *
- * Which facets a sphere touches is decided one by one; what then happens is the same arithmetic for
- * all, so contacts are gathered and the law is taken several at a time.
+ * Which facets a sphere touches is decided one by one; what then happens is the same arithmetic
+ * for all, so contacts are gathered and the law is taken several at a time.
  */
 #ifndef TREMIE_CONTACT_FACET_KERNEL_H
 #define TREMIE_CONTACT_FACET_KERNEL_H

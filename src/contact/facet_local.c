@@ -54,8 +54,8 @@ static void find_touches(struct facet_local *local, const struct facet_contact *
     }
 }
 
-/* Is `other` the same contact as the one that stands: nearly the same normal, or nothing of it rises
- * above the plane that the standing one touches? */
+/* Is `other` the same contact as the one that stands: nearly the same normal, or nothing of it
+ * rises above the plane that the standing one touches? */
 static bool is_same_contact(const struct facet_local_touch *standing,
                             const struct facet_local_touch *other, double radius)
 {

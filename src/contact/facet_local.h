@@ -1,10 +1,11 @@
 /*
  * Local search among the features of one body near one sphere: which contacts act in this step.
  *
- * First every listed feature says whether it touches, then it is decided which of those stand: the
- * deepest first, and it silences all that are the same contact.  What a feature remembers that
- * stands no more passes to the one that begins to stand with nearly the same normal.  Only the history
- * of contacts and the geometry enter, so besides what touches the list may hold anything.
+ * First every listed feature says whether it touches, then it is decided which of those stand:
+ * the deepest first, and it silences all that are the same contact. What a feature remembers
+ * that stands no more passes to the one that begins to stand with nearly the same normal. Only
+ * the history of contacts and the geometry enter, so besides what touches the list may hold
+ * anything.
  */
 #ifndef TREMIE_CONTACT_FACET_LOCAL_H
 #define TREMIE_CONTACT_FACET_LOCAL_H
@@ -31,8 +32,8 @@ struct facet_local {
 };
 
 void facet_local_clear(struct facet_local *local);
-/* Searches a group: the n entries of a sphere with one body.  Their history is handed over, nothing
- * else is changed.  Local. */
+/* Searches a group: the n entries of a sphere with one body. Their history is handed over,
+ * nothing else is changed. Local. */
 void facet_local_search(struct facet_local *local, struct facet_contact *group, int n,
                         const struct mesh *mesh, struct vec3 centre, double radius);
 

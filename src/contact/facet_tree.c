@@ -9,7 +9,8 @@
 
 enum { LEAF_FACES = 4 };
 
-/* An edge or vertex must not be missed because rounding puts its face a hair farther than itself. */
+/* An edge or vertex must not be missed because rounding puts its face a hair farther than
+ * itself. */
 static const double MARGIN = 1.0 + 1e-6;
 
 struct split { /* a face on its way to its place in the tree */
@@ -39,7 +40,8 @@ static double face_middle(const struct mesh *mesh, int f, int axis)
     return sum / (double)mesh->faces[f].n;
 }
 
-/* Sorts faces [begin, end) of the order by their middles along the axis where these spread most. */
+/* Sorts faces [begin, end) of the order by their middles along the axis where these spread
+ * most. */
 static void sort_faces(struct facet_tree *tree, const struct mesh *mesh, int begin, int end,
                        struct split *splits)
 {
@@ -158,7 +160,8 @@ static void add_if_near(const struct mesh *mesh, int feature, struct vec3 centre
         add_feature(found, feature);
 }
 
-/* A face that is near, and what is near of its border, each edge and vertex with its first face. */
+/* A face that is near, and what is near of its border, each edge and vertex with its first
+ * face. */
 static void add_face(const struct facet_tree *tree, const struct mesh *mesh, int f,
                      struct vec3 centre, double reach, struct facet_tree_found *found)
 {

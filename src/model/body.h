@@ -1,8 +1,8 @@
 /*
  * Rigid bodies: surfaces that are at rest or move as prescribed.
  *
- * Motion is a function of step x dt alone (never accumulated), so a restart finds the same bits.  The
- * sine and cosine are our own (base/elementary.h).
+ * Motion is a function of step x dt alone (never accumulated), so a restart finds the same
+ * bits. The sine and cosine are our own (base/elementary.h).
  */
 #ifndef TREMIE_MODEL_BODY_H
 #define TREMIE_MODEL_BODY_H

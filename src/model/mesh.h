@@ -1,10 +1,11 @@
 /*
- * The surface of one body as features: faces (flat convex polygons of 3 or 4 vertices), edges and
- * vertices.  One contact belongs to one feature; the topology says which feature's contact another
- * one already holds.  Reference coordinates are those at time 0; `place` below are the present ones.
+ * The surface of one body as features: faces (flat convex polygons of 3 or 4 vertices), edges
+ * and vertices. One contact belongs to one feature; the topology says which feature's contact
+ * another one already holds. Reference coordinates are those at time 0; `place` below are the
+ * present ones.
  *
- * Feature numbers of a body: faces first (0 .. n_faces-1), then edges, then vertices.  They are part
- * of the canonical order and of checkpoints, so they depend on the job alone.
+ * Feature numbers of a body: faces first (0 .. n_faces-1), then edges, then vertices. They are
+ * part of the canonical order and of checkpoints, so they depend on the job alone.
  */
 #ifndef TREMIE_MODEL_MESH_H
 #define TREMIE_MODEL_MESH_H
@@ -24,11 +25,10 @@ struct mesh_border {
     double length_squared; /* [m2] */
 } __attribute__((aligned(64)));
 
+/* An edge with more than two faces, as where walls meet in a T, keeps the first two. */
 struct mesh_edge {
     int vertices[2];
-    int faces
-        [2]; /* adjoining faces; -1 where there is none (a free edge).  An edge with more than two
-                     faces keeps the first two in face order; the mesh check reports it. */
+    int faces[2]; /* adjoining faces; -1 where there is none (a free edge) */
 };
 
 struct mesh {
@@ -45,9 +45,10 @@ struct mesh {
 };
 
 /*
- * Builds the topology from vertices and facets (vertex indices; a triangle has -1 last).  Vertices
- * with exactly equal coordinates are joined.  A quad that is not flat (a vertex off the plane by more
- * than 1e-9 of its size) or not convex becomes four triangles about its mean point.
+ * Builds the topology from vertices and facets (vertex indices; a triangle has -1 last).
+ * Vertices with exactly equal coordinates are joined. A quad that is not flat (a vertex off the
+ * plane by more than 1e-9 of its size) or not convex becomes four triangles about its mean
+ * point.
  */
 void mesh_build(struct mesh *mesh, int n_vertices, const struct vec3 *vertices, int n_facets,
                 const int (*facets)[4]);

@@ -1,7 +1,7 @@
 /* Closest points by feature: see contact_geometry.h.
  *
- * Signed offsets from the border of a region are kept as products with the length of the edge they
- * belong to, and compared as squares: the common case needs neither root nor division. */
+ * Signed offsets from the border of a region are kept as products with the length of the edge
+ * they belong to, and compared as squares: the common case needs neither root nor division. */
 #include "physics/contact_geometry.h"
 
 static const double SEAM = 1e-7; /* how far regions reach beyond their borders, in radii */
@@ -66,7 +66,8 @@ static bool face_touches(const struct mesh *mesh, int f, struct vec3 centre, dou
     return true;
 }
 
-/* From a point of an edge or vertex; where the centre lies on it, the surface's own normal serves. */
+/* From a point of an edge or vertex; where the centre lies on it, the surface's own normal
+ * serves. */
 static inline struct contact_geometry at_point(const struct mesh *mesh, int face,
                                                struct vec3 point, struct vec3 centre)
 {

@@ -1,15 +1,16 @@
 /*
  * Where a sphere meets a feature (face, edge, vertex) of a surface.
  *
- * A sphere touches a surface where the distance to its centre is least *locally*: a minimum inside a
- * face, on an edge, at a vertex.  Each place belongs to one feature.  A face holds what projects into
- * it; an edge what projects onto it and lies before none of its adjoining faces; a vertex what lies
- * beyond it on all of its edges.  So a convex edge gives one contact, a concave corner one a wall.
+ * A sphere touches a surface where the distance to its centre is least *locally*: a minimum
+ * inside a face, on an edge, at a vertex. Each place belongs to one feature. A face holds what
+ * projects into it; an edge what projects onto it and lies before none of its adjoining faces;
+ * a vertex what lies beyond it on all of its edges. So a convex edge gives one contact, a
+ * concave corner one a wall.
  *
  * Neighbours decide by the same products of the same numbers, and every region reaches a hair
- * (1e-7 of the radius) beyond its borders.  So rounding leaves no gap at a seam, where a sphere would
- * fall through for a step; at the price that two features may hold the same place, where who asks
- * must drop one (contact/facet_contact.c).
+ * (1e-7 of the radius) beyond its borders. So rounding leaves no gap at a seam, where a sphere
+ * would fall through for a step; at the price that two features may hold the same place, where
+ * who asks must drop one (contact/facet_contact.c).
  *
  * Surfaces have two sides: the normal points to whichever side the centre is on.
  */
@@ -39,7 +40,8 @@ struct contact_geometry contact_geometry_closest(const struct mesh *mesh, int fe
 bool contact_geometry_reaches(const struct mesh *mesh, int feature, struct vec3 centre,
                               double reach);
 
-/* The same for a side of a face, its edge and its vertices; quick where the centre is well inside. */
+/* The same for a side of a face, its edge and its vertices; quick where the centre is well
+ * inside. */
 bool contact_geometry_reaches_side(const struct mesh *mesh, int face, int side,
                                    struct vec3 centre, double reach);
 

@@ -1,6 +1,6 @@
 /*
- * Closest points by feature, against a search for the nearest point of every facet that knows nothing
- * of regions; and the promise that regions leave no gap between them.
+ * Closest points by feature, against a search for the nearest point of every facet that knows
+ * nothing of regions; and the promise that regions leave no gap between them.
  */
 #include "check.h"
 #include "physics/contact_geometry.h"
@@ -22,7 +22,8 @@ static double random_between(double low, double high)
     return low + (high - low) * random_number();
 }
 
-/* A sheet of n x n squares, every other one cut into triangles; `bump` shakes the inner heights. */
+/* A sheet of n x n squares, every other one cut into triangles; `bump` shakes the inner
+ * heights. */
 static void build_sheet(struct mesh *mesh, int n, double spacing, double bump)
 {
     struct vec3 *vertices = calloc((size_t)((n + 1) * (n + 1)), sizeof *vertices);
@@ -158,7 +159,8 @@ TEST(in_a_concave_corner_every_wall_has_its_contact)
     mesh_clear(&mesh);
 }
 
-/* Centres over vertices, over seams and a rounding error beside them, far from the origin too. */
+/* Centres over vertices, over seams and a rounding error beside them, far from the origin
+ * too. */
 TEST(a_flat_seam_has_no_gap)
 {
     const double spacings[3] = {0.25, 0.1, 1.0 / 3.0}, radius = 0.1;

@@ -159,8 +159,8 @@ struct sheet_store {
     int facets[2 * SHEET_CELLS * SHEET_CELLS][4];
 };
 
-/* A sheet over [0, size]^2, sloping by the angle whose cosine and sine are .96 and .28, or flat;
- * `bump` shakes heights. */
+/* A sheet over [0, size]^2, sloping by the angle whose cosine and sine are .96 and .28, or
+ * flat; `bump` shakes heights. */
 static struct job_body sheet_body(struct sheet_store *store, enum sheet kind, double size,
                                   bool slopes, double bump)
 {
@@ -189,7 +189,8 @@ static struct job_body sheet_body(struct sheet_store *store, enum sheet kind, do
     return mesh_body((n + 1) * (n + 1), store->vertices, n_facets, store->facets);
 }
 
-/* ---- How many contacts ------------------------------------------------------------------------ */
+/* ---- How many contacts
+ * ------------------------------------------------------------------------ */
 
 TEST(a_corner_of_three_walls_has_three_contacts)
 {
@@ -266,7 +267,8 @@ TEST(a_shallow_fold_is_one_contact_a_steep_one_two)
 
 TEST(a_thin_wedge_is_felt_on_its_near_side_only)
 {
-    /* A knife of 30 degrees, its edge along y, pointing to -x; the sphere lies on its upper side. */
+    /* A knife of 30 degrees, its edge along y, pointing to -x; the sphere lies on its upper
+     * side. */
     struct vec3 vertices[6] = {{0, -5, 0}, {5, -5, 1.34}, {5, -5, -1.34},
                                {0, 5, 0},  {5, 5, 1.34},  {5, 5, -1.34}};
     int facets[2][4] = {{0, 3, 4, 1}, {0, 2, 5, 3}};
@@ -281,10 +283,12 @@ TEST(a_thin_wedge_is_felt_on_its_near_side_only)
     scene_clear(&scene);
 }
 
-/* ---- Seams ------------------------------------------------------------------------------------ */
+/* ---- Seams
+ * ------------------------------------------------------------------------------------ */
 
-/* Takes a sphere of radius 1 across a sheet and across one large quad in the same plane, spinning so
- * that it nearly rolls; returns how much the two force rows ever differ, relative to the force. */
+/* Takes a sphere of radius 1 across a sheet and across one large quad in the same plane,
+ * spinning so that it nearly rolls; returns how much the two force rows ever differ, relative
+ * to the force. */
 static double worst_difference(enum sheet kind, bool slopes, struct vec3 from,
                                struct vec3 towards, double overlap, struct vec3 drift)
 {
@@ -337,7 +341,8 @@ TEST(a_sphere_that_rolls_over_coplanar_facets_feels_no_seam)
         for (int slopes = 0; slopes < 2; slopes++) {
             const enum sheet sheet = (enum sheet)kind;
             const bool tilted = slopes == 1;
-            /* Anyhow; along a seam; along a diagonal, from vertex to vertex; standing on a vertex. */
+            /* Anyhow; along a seam; along a diagonal, from vertex to vertex; standing on a
+             * vertex. */
             const struct vec3 ways[4][2] = {{{1.3, 1.7, 0}, {5.1, 3.3, 0}},
                                             {{1.0, 3.0, 0}, {6.0, 0.0, 0}},
                                             {{1.0, 1.0, 0}, {6.0, 6.0, 0}},
@@ -355,8 +360,8 @@ TEST(a_sphere_that_rolls_over_coplanar_facets_feels_no_seam)
 
 TEST(facets_that_do_not_share_vertices_feel_like_one_plane)
 {
-    /* One square beside two, without a vertex in the middle of its side; soft, so that the seam lies
-     * deep within the contact patch. */
+    /* One square beside two, without a vertex in the middle of its side; soft, so that the seam
+     * lies deep within the contact patch. */
     struct vec3 vertices[11] = {{0, 0, 0}, {4, 0, 0}, {4, 8, 0}, {0, 8, 0},
                                 {4, 0, 0}, {8, 0, 0}, {8, 3, 0}, {4, 3, 0},
                                 {8, 8, 0}, {4, 8, 0}, {4, 3, 0}};
@@ -382,7 +387,8 @@ TEST(a_shallow_fold_passes_the_spring_on)
     struct job_body fold = fold_body(vertices, facets, 0.17);
     struct scene scene;
     scene_build(&scene, RUBBER, 20.0, 1.0, 1, &fold, 1, 1.0);
-    /* Down the left side and up the right one at a constant height above the deeper of the two. */
+    /* Down the left side and up the right one at a constant height above the deeper of the
+     * two. */
     double spring_before = 0.0, force_before = 0.0;
     for (int k = 0; k <= 400; k++) {
         const double x = 0.001 * (double)(k - 200), c = cos(0.085), s = sin(0.085);
@@ -435,7 +441,8 @@ TEST(the_spring_keeps_its_size_when_it_turns)
     scene_clear(&scene);
 }
 
-/* ---- The same bits ---------------------------------------------------------------------------- */
+/* ---- The same bits
+ * ---------------------------------------------------------------------------- */
 
 static void start_rough_scene(struct scene *scene, struct sheet_store *store, int n)
 {
@@ -582,7 +589,8 @@ TEST(a_search_keeps_what_touches_even_out_of_reach)
     scene_clear(&scene);
 }
 
-/* ---- Loads and energies ------------------------------------------------------------------------ */
+/* ---- Loads and energies
+ * ------------------------------------------------------------------------ */
 
 TEST(a_body_feels_the_opposite_of_what_its_spheres_feel)
 {
@@ -623,7 +631,8 @@ TEST(a_body_feels_the_opposite_of_what_its_spheres_feel)
     }
     for (int k = 0; k < 3; k++)
         EXPECT_NEAR(exact_sum_value(&total[k]), 0.0, 1e-12);
-    /* The law acts at the undeformed surface, the body's torque at the facet: apart by the overlap. */
+    /* The law acts at the undeformed surface, the body's torque at the facet: apart by the
+     * overlap. */
     EXPECT_NEAR(vec3_norm(vec3_sub(torque, on_bodies)) / vec3_norm(on_bodies), 0.0, 0.05);
     EXPECT(vec3_norm(on_bodies) > 1.0);
     scene_clear(&scene);
@@ -659,8 +668,8 @@ TEST(a_moving_wall_is_a_moving_sphere_seen_from_the_wall)
     scene_clear(&scenes[1]);
 }
 
-/* An elastic sphere on a rigid plane: greatest overlap, force and duration (VERIFICATION: the rigid
- * plane is 1e6 times as stiff). */
+/* An elastic sphere on a rigid plane: greatest overlap, force and duration (VERIFICATION: the
+ * rigid plane is 1e6 times as stiff). */
 TEST(an_elastic_impact_on_a_plane_is_hertz)
 {
     struct job_body plane = {.name = NAME,
