@@ -1,10 +1,10 @@
 /*
- * From a file to a struct job: read the YAML, lay the overrides over it, slip the libraries under it,
- * fill the struct by the schema, check what concerns several keys, and keep only the materials that
- * something is made of.
+ * From a file to a struct job: read the YAML, lay the overrides over it, slip the libraries
+ * under it, fill the struct by the schema, check what concerns several keys, and keep only the
+ * materials that something is made of.
  *
- * Materials are sorted by name and pairs by material, so the indices that states on disk hold do not
- * depend on the order in a file or on which library gave them.
+ * Materials are sorted by name and pairs by material, so the indices that states on disk hold
+ * do not depend on the order in a file or on which library gave them.
  */
 #include "job/job.h"
 
@@ -103,7 +103,8 @@ static void override_apply(struct yaml_tree *tree, struct yaml_tree_node *root,
 
 /* ------------------------------------------------------------------------------- libraries */
 
-/* Appends to a mapping what a library's mapping has and it has not; mappings in both are merged. */
+/* Appends to a mapping what a library's mapping has and it has not; mappings in both are
+ * merged. */
 static void mapping_merge(struct yaml_tree_node *own, const struct yaml_tree_node *library)
 {
     struct yaml_tree_node *next;
@@ -197,7 +198,8 @@ static void library_merge(struct yaml_tree *tree, struct yaml_tree_node *root,
     }
 }
 
-/* Reads one library; the mistake of a path that cannot be opened stands where the job names it. */
+/* Reads one library; the mistake of a path that cannot be opened stands where the job names
+ * it. */
 static void library_read(struct yaml_tree *tree, struct yaml_tree_node *root,
                          const struct yaml_tree_node *include, struct mistakes *mistakes)
 {
@@ -399,24 +401,27 @@ char *job_write(const struct job *job)
 static const char reference_head[] =
     "# The job file\n"
     "\n"
-    "This page is written by `bin/tremie reference` from the table that also checks job files\n"
-    "(`src/job/job_keys.c`); a test compares the two. `bin/tremie check JOB` lists every mistake of a\n"
-    "file at once, as `file:line:column: what is wrong; what is expected`.\n"
+    "This page is written by `bin/tremie reference` from the table that also checks job\n"
+    "files (`src/job/job_keys.c`); a test compares the two. `bin/tremie check JOB` lists\n"
+    "every mistake of a file at once, as `file:line:column: what is wrong; what is\n"
+    "expected`.\n"
     "\n"
-    "A job is one YAML file in UTF-8 of at most 4 MiB, without anchors, aliases and tags. Keys are those\n"
-    "below and no others. A number may carry a unit, like `2.5 mm`, `10 us`, `70 GPa`, `9.81 m/s2`,\n"
-    "`30 deg` or `100 rpm`; without one it is in the SI unit given here. `2.5 mm` and `0.0025` are\n"
-    "exactly the same number. `.` stands for a key inside a mapping, `[]` for the elements of a list,\n"
-    "NAME for any name. What has no default and is not required is absent when left out.\n"
+    "A job is one YAML file in UTF-8 of at most 4 MiB, without anchors, aliases and tags.\n"
+    "Keys are those below and no others. A number may carry a unit, like `2.5 mm`, `10 us`,\n"
+    "`70 GPa`, `9.81 m/s2`, `30 deg` or `100 rpm`; without one it is in the SI unit given\n"
+    "here. `2.5 mm` and `0.0025` are exactly the same number. `.` stands for a key inside a\n"
+    "mapping, `[]` for the elements of a list, NAME for any name. What has no default and\n"
+    "is not required is absent when left out.\n"
     "\n"
     "`include` names libraries, like `../config/materials.yaml`: files with `materials` and\n"
-    "`contact: {pairs: ...}` alone. What the job itself says wins, key by key for a material, pair by\n"
-    "pair for pairs. `--set KEY=VALUE` on the command line wins over both; it takes the same keys with\n"
-    "numbers from 0 for the elements of lists, as in `--set spheres.0.radius=0.12`.\n"
+    "`contact: {pairs: ...}` alone. What the job itself says wins, key by key for a\n"
+    "material, pair by pair for pairs. `--set KEY=VALUE` on the command line wins over\n"
+    "both; it takes the same keys with numbers from 0 for the elements of lists, as in\n"
+    "`--set spheres.0.radius=0.12`.\n"
     "\n"
-    "The folder of a run holds `job.yaml`: the job as used, libraries and defaults written out. On a\n"
-    "resume `title`, `time.end`, `decomposition`, `checkpoint`, `output`, `watch` and `testing` may\n"
-    "differ; everything else must be as it was.\n";
+    "The folder of a run holds `job.yaml`: the job as used, libraries and defaults written\n"
+    "out. On a resume `title`, `time.end`, `decomposition`, `checkpoint`, `output`, `watch`\n"
+    "and `testing` may differ; everything else must be as it was.\n";
 
 char *job_reference_page(void)
 {

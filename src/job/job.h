@@ -1,8 +1,8 @@
 /*
  * What the user asked for: a job file, read, checked and completed with defaults.
  *
- * The schema table (job/schema) is the one description of every key; this struct is what it fills.
- * Everything is in SI units here.  Indices refer to the arrays of this struct.
+ * The schema table (job/schema) is the one description of every key; this struct is what it
+ * fills.  Everything is in SI units here.  Indices refer to the arrays of this struct.
  */
 #ifndef TREMIE_JOB_JOB_H
 #define TREMIE_JOB_JOB_H
@@ -38,8 +38,9 @@ struct job_spheres {
     struct vec3 velocity; /* initial [m/s] */
     struct vec3 spin;     /* initial angular velocity [rad/s] */
     enum job_packing packing;
-    /* Lattice: `count` places in rows along x, then y, then layers along z, `spacing` apart; a layer
-     * covers size[0] x size[1] from the corner (the least coordinates of sphere *surfaces*). */
+    /* Lattice: `count` places in rows along x, then y, then layers along z, `spacing` apart;
+     * a layer covers size[0] x size[1] from the corner (the least coordinates of sphere
+     * *surfaces*). */
     int64_t count;
     double spacing; /* [m] */
     struct vec3 corner;
@@ -81,7 +82,8 @@ struct job_body {
     struct vec3 *vertices;     /* [m] */
     int n_facets;
     int (*facets)[4]; /* vertex indices; a triangle has -1 last */
-    /* Motion: x(t) = pivot + R(rate t about axis) (x(0) - pivot) + velocity t, within [start, stop]. */
+    /* Motion: x(t) = pivot + R(rate t about axis) (x(0) - pivot) + velocity t, within
+     * [start, stop]. */
     struct vec3 velocity;    /* [m/s] */
     struct vec3 pivot, axis; /* axis has length 1, or 0 where nothing rotates */
     double rate;             /* angular velocity about the axis [rad/s] */
@@ -149,32 +151,33 @@ struct job {
     int64_t order_every; /* M: steps between renewals of the canonical order (DESIGN: order) */
 };
 
-/* One `--set key=value` of the command line; key is a dotted path (spheres.0.radius counts lists). */
+/* One `--set key=value` of the command line; key is a dotted path (spheres.0.radius counts
+ * lists). */
 struct job_override {
     const char *text;
 };
 
 /*
- * Reads, checks and completes the job file.  Returns false with all mistakes listed when there is any.
- * Includes are read relative to the job file; what the job says wins.  Local: one rank reads and
- * broadcasts what job_write() makes of it; the others call job_read_text().
+ * Reads, checks and completes the job file.  Returns false with all mistakes listed when there
+ * is any.  Includes are read relative to the job file; what the job says wins.  Local: one rank
+ * reads and broadcasts what job_write() makes of it; the others call job_read_text().
  */
 bool job_read(struct job *job, const char *path, int n_overrides,
               const struct job_override *overrides, struct mistakes *mistakes);
-/* The same from a text that job_write() made; `path` is where the job came from.  Reads no other file.
- * Local. */
+/* The same from a text that job_write() made; `path` is where the job came from.  Reads no
+ * other file. Local. */
 bool job_read_text(struct job *job, const char *path, const char *text,
                    struct mistakes *mistakes);
 void job_clear(struct job *job);
 
-/* The job as used, every default written out, as YAML that job_read accepts and that gives an equal
- * job.  The caller frees it. */
+/* The job as used, every default written out, as YAML that job_read accepts and that gives
+ * an equal job.  The caller frees it. */
 char *job_write(const struct job *job);
 
 /*
- * Compares two jobs' YAML as written by job_write for a resume.  What may differ (end time, output,
- * checkpoint, decomposition, force, watch, title) is ignored; the first other difference is returned
- * as "key: was X, now Y" (caller frees), NULL when there is none.
+ * Compares two jobs' YAML as written by job_write for a resume.  What may differ (end time,
+ * output, checkpoint, decomposition, force, watch, title) is ignored; the first other
+ * difference is returned as "key: was X, now Y" (caller frees), NULL when there is none.
  */
 char *job_difference(const char *was, const char *now);
 

@@ -1,6 +1,7 @@
 /*
- * Every check finds the place of its message by the path of the key ("spheres.0.packing.spacing") in
- * the tree that the file gave; where the key is not written, the nearest thing around it stands for it.
+ * Every check finds the place of its message by the path of the key
+ * ("spheres.0.packing.spacing") in the tree that the file gave; where the key is not written,
+ * the nearest thing around it stands for it.
  */
 #include "job/job_check.h"
 
@@ -60,7 +61,8 @@ static bool is_material(const struct check *check, int material)
 
 #define PATH(...) snprintf(path, sizeof path, __VA_ARGS__)
 
-/* ------------------------------------------------------------------------------- time, names */
+/* ------------------------------------------------------------------------------- time,
+ * names */
 
 static void time_check(const struct check *check)
 {
@@ -211,7 +213,8 @@ static void csv_check(const struct check *check, int i, bool *group)
         fclose(in);
 }
 
-/* ------------------------------------------------------------------------------- spheres, bodies */
+/* ------------------------------------------------------------------------------- spheres,
+ * bodies */
 
 static void lattice_check(const struct check *check, int i)
 {
@@ -362,8 +365,8 @@ static void domain_check(const struct check *check)
 
 /* ------------------------------------------------------------------------------- pairs */
 
-/* Lists pairs of materials that are given twice or are missing.  `falling` are the spheres' materials,
- * `standing` those of bodies. */
+/* Lists pairs of materials that are given twice or are missing.  `falling` are the spheres'
+ * materials, `standing` those of bodies. */
 static void pairs_check(const struct check *check, const bool *falling, const bool *standing)
 {
     const struct job *job = check->job;
@@ -389,11 +392,11 @@ static void pairs_check(const struct check *check, const bool *falling, const bo
                 (falling[a] && (falling[b] || standing[b])) || (standing[a] && falling[b]);
             const char *p = job->materials[a].name, *q = job->materials[b].name;
             if (meet && given[a * n + b] == 0)
-                mistake(
-                    check, "contact.pairs",
-                    "say nothing about %s and %s, which can meet; {between: [%s, %s], friction: ..., "
-                    "restitution: ...} is expected",
-                    p, q, p, q);
+                mistake(check, "contact.pairs",
+                        "say nothing about %s and %s, which can meet; {between: [%s, %s], "
+                        "friction: ..., "
+                        "restitution: ...} is expected",
+                        p, q, p, q);
         }
     }
     free(given);

@@ -1,6 +1,7 @@
 /*
- * Every key of a job file: type, unit, bounds, default, meaning.  The checks, the messages, the job as
- * used and the reference page (jobs/README.md) all come from here; adding a key is adding a row.
+ * Every key of a job file: type, unit, bounds, default, meaning.  The checks, the messages, the
+ * job as used and the reference page (jobs/README.md) all come from here; adding a key is
+ * adding a row.
  *
  * The bounds on lengths and speeds are far beyond any use: they keep sums and squares finite.
  */
@@ -71,7 +72,7 @@ static const struct schema_key pair_keys[] = {
     {"friction", SCHEMA_NUMBER, "Coulomb's coefficient of friction", .unit = "1",
      .required = true, BETWEEN(0.0, 100.0), AT(struct job_pair, friction)},
     {"restitution", SCHEMA_NUMBER,
-     "speed after over speed before a straight impact: what comes out, damping is chosen for it",
+     "speed after over speed before a straight impact: what comes out, damping is chosen so",
      .unit = "1", .required = true, BETWEEN(0.05, 1.0), AT(struct job_pair, restitution)},
     END};
 
@@ -81,8 +82,8 @@ static const struct schema_key contact_keys[] = {
      "keep account of energy: kinetic, potential, elastic, dissipated, work; costs little",
      .standard = "true", AT(struct job, energy_ledger)},
     {"pairs", SCHEMA_LIST,
-     "what happens between two materials; every two that can meet need one (spheres among each other, "
-     "spheres with bodies)",
+     "what happens between two materials; every two that can meet need one (spheres among "
+     "each other, spheres with bodies)",
      UP_TO(JOB_KEYS_MAX_PAIRS), .inside = pair_keys, LIST_AT(struct job, pairs, n_pairs)},
     END};
 
@@ -101,8 +102,8 @@ static const struct schema_key packing_keys[] = {
     {"size", SCHEMA_NUMBER, "width of a layer along x and y", .unit = "m", .required = true,
      ABOVE_TO(0.0, FAR), .kinds = KIND(JOB_PACKING_LATTICE), AT(struct job_spheres, size)},
     {"file", SCHEMA_FILE,
-     "CSV file, relative to the job file; its first line names the columns: x_m, y_m, z_m and, if "
-     "wanted, radius_m, material, vx_m_s, vy_m_s, vz_m_s",
+     "CSV file, relative to the job file; its first line names the columns: x_m, y_m, z_m "
+     "and, if wanted, radius_m, material, vx_m_s, vy_m_s, vz_m_s",
      .required = true, .kinds = KIND(JOB_PACKING_CSV), AT(struct job_spheres, file)},
     END};
 
@@ -199,7 +200,8 @@ static const struct schema_key section_keys[] = {
 
 static const struct schema_key domain_keys[] = {
     {"min", SCHEMA_NUMBER,
-     "least corner of the region that spheres may be in; by default the scene's extent, grown by its size",
+     "least corner of the region that spheres may be in; by default the scene's extent, grown "
+     "by its size",
      .unit = "m", BETWEEN(-FAR, FAR), GIVEN(struct job, domain.given),
      AT(struct job, domain.min)},
     {"max", SCHEMA_NUMBER, "greatest corner of that region", .unit = "m", BETWEEN(-FAR, FAR),
@@ -211,8 +213,8 @@ static const struct schema_key domain_keys[] = {
 
 static const struct schema_key decomposition_keys[] = {
     {"buffer", SCHEMA_NUMBER,
-     "width of the buffer zone around a subdomain; larger means rarer redistribution and more copies; "
-     "`auto` is half of the mean radius",
+     "width of the buffer zone around a subdomain; larger means rarer redistribution and more "
+     "copies; `auto` is half of the mean radius",
      .unit = "m", .standard = "auto", ABOVE_TO(0.0, FAR), .word = "auto", .word_value = 0.0,
      AT(struct job, decomposition.buffer)},
     {"imbalance", SCHEMA_NUMBER, "largest over mean run time of the ranks that moves the boxes",
@@ -222,8 +224,8 @@ static const struct schema_key decomposition_keys[] = {
      "what a sphere weighs besides itself: its contacts or its candidates",
      .standard = "contacts", .choices = weights, AT(struct job, decomposition.weights)},
     {"grid", SCHEMA_INT,
-     "a fixed grid of equal subdomains along x, y and z, never rebalanced; their number must be that of "
-     "the ranks",
+     "a fixed grid of equal subdomains along x, y and z, never rebalanced; their number must "
+     "be that of the ranks",
      BETWEEN(1.0, 1000.0), GIVEN(struct job, decomposition.fixed),
      AT(struct job, decomposition.fixed)},
     END};
@@ -281,8 +283,8 @@ const struct schema_key job_keys[] = {
      .choices = dimensions},
     {"include", SCHEMA_INCLUDE,
      .help =
-         "libraries of materials and pairs, relative to the job file; what the job says wins, then what a "
-         "later library says"},
+         "libraries of materials and pairs, relative to the job file; what the job says wins, "
+         "then what a later library says"},
     {"time", SCHEMA_GROUP, "how long and in which steps", .required = true,
      .inside = time_keys},
     {"gravity", SCHEMA_NUMBER, "acceleration of gravity", .unit = "m/s2",
@@ -310,7 +312,8 @@ const struct schema_key job_keys[] = {
     {"watch", SCHEMA_GROUP, "limits that stop a run, with the last good checkpoint kept",
      .inside = watch_keys},
     {"order_every", SCHEMA_COUNT,
-     "steps between renewals of the canonical order of the spheres; part of the result's last bits",
+     "steps between renewals of the canonical order of the spheres; part of the result's last "
+     "bits",
      .standard = "4096", BETWEEN(1.0, 1e9), AT(struct job, order_every)},
     {"testing", SCHEMA_GROUP, "for tests of reproducibility; changes no result",
      .inside = testing_keys},

@@ -1,10 +1,10 @@
 /*
- * Reading by the table: every value is checked for type, unit, bounds and choice, and whatever is wrong
- * is listed with its place, so a person mends a file in one go.  Defaults take the same path as values
- * that were given, so a wrong default shows in the first test.
+ * Reading by the table: every value is checked for type, unit, bounds and choice, and whatever
+ * is wrong is listed with its place, so a person mends a file in one go.  Defaults take the
+ * same path as values that were given, so a wrong default shows in the first test.
  *
- * After SCHEMA_MISTAKES mistakes the rest is cut off: nobody mends more at once, and a file of a
- * million wrong keys must not take minutes.
+ * After SCHEMA_MISTAKES mistakes the rest is cut off: nobody mends more at once, and a file of
+ * a million wrong keys must not take minutes.
  */
 #include "job/schema.h"
 
@@ -124,7 +124,8 @@ static bool name_is_valid(const char *name)
     return true;
 }
 
-/* ------------------------------------------------------------------------------- expectations */
+/* -------------------------------------------------------------------------------
+ * expectations */
 
 static size_t n_components(const struct schema_key *key)
 {
@@ -267,7 +268,8 @@ static bool refuse_text(const struct item *item, const struct yaml_tree_node *no
     return refuse(item, node, what);
 }
 
-/* ------------------------------------------------------------------------------- single values */
+/* ------------------------------------------------------------------------------- single
+ * values */
 
 static bool is_within(const struct schema_key *key, double value)
 {
@@ -367,7 +369,8 @@ static bool reference_read(const struct item *item, const struct yaml_tree_node 
     return false;
 }
 
-/* ------------------------------------------------------------------------------- lists of values */
+/* ------------------------------------------------------------------------------- lists of
+ * values */
 
 /* Is the node a list of n elements? */
 static bool has_elements(const struct item *item, const struct yaml_tree_node *node, size_t n)
@@ -555,7 +558,8 @@ static void elements_read(const struct item *item)
         if (named && !name_is_valid(elements[i]->key))
             mistake(
                 item->reader, elements[i]->file, elements[i]->key_line, elements[i]->key_column,
-                "%s is no name; letters, digits, - and _ are expected (a letter first, at most 40)",
+                "%s is no name; letters, digits, - and _ are expected (a letter first, at most "
+                "40)",
                 path);
         if (named) {
             char *name = array_string(elements[i]->key);
@@ -650,8 +654,8 @@ static void default_read(struct item *item)
     yaml_tree_clear(&tree);
 }
 
-/* What the mapping says under `kind`: the index of the choice, 0 where the table knows no kinds, -1
- * where it says nothing usable. */
+/* What the mapping says under `kind`: the index of the choice, 0 where the table knows no
+ * kinds, -1 where it says nothing usable. */
 static int kind_find(const struct schema_key *table, const struct yaml_tree_node *node)
 {
     const struct schema_key *key = table;

@@ -2,8 +2,9 @@
  * A table that describes every key of a file, and what follows from it: reading with checks and
  * messages, writing back with defaults, the reference page.
  *
- * A row names a key, its type, unit, bounds, default and meaning, and where in a struct the value goes.
- * Rows of groups, lists and mappings point to further tables.  Values are stored in SI units.
+ * A row names a key, its type, unit, bounds, default and meaning, and where in a struct the
+ * value goes.  Rows of groups, lists and mappings point to further tables.  Values are stored
+ * in SI units.
  */
 #ifndef TREMIE_JOB_SCHEMA_H
 #define TREMIE_JOB_SCHEMA_H
@@ -28,11 +29,11 @@ enum schema_type {
     SCHEMA_CHOICES,   /* int: a set of bits 1 << index into `choices` */
     SCHEMA_REFERENCE, /* int: index of a name in the reader's list, or a list of as many */
     SCHEMA_POINTS,    /* struct vec3 * and a count: a list of [x, y, z] */
-    SCHEMA_FACETS, /* int (*)[4] and a count: a list of three or four indices, the fourth else -1 */
-    SCHEMA_GROUP, /* a mapping whose values go to the same struct */
-    SCHEMA_LIST,  /* pointer and count: a list of mappings */
-    SCHEMA_NAMED, /* pointer and count: a mapping of names to mappings; the name is the element's
-                         first member */
+    SCHEMA_FACETS,    /* int (*)[4] and a count: a list of 3 or 4 indices, the fourth else -1 */
+    SCHEMA_GROUP,     /* a mapping whose values go to the same struct */
+    SCHEMA_LIST,      /* pointer and count: a list of mappings */
+    SCHEMA_NAMED,   /* pointer and count: a mapping of at most `max` names to mappings; the name
+                     is the element's first member */
     SCHEMA_INCLUDE, /* handled before the schema: described here only */
 };
 
@@ -57,8 +58,8 @@ struct schema_key {
     const char *const *choices; /* NULL ends it */
     unsigned kinds; /* applies only where the table's `kind` is one of these bits; 0: always */
     size_t offset, size;
-    /* An optional key without a default is present when these bytes are not all zero; a bool among
-     * them is set when it is read. */
+    /* An optional key without a default is present when these bytes are not all zero; a bool
+     * among them is set when it is read. */
     size_t given, given_size;
     size_t count;   /* offset of the int that counts elements */
     size_t element; /* bytes of an element */
@@ -74,8 +75,8 @@ struct schema_reader {
 /* More mistakes than these are not listed. */
 enum { SCHEMA_MISTAKES = 200 };
 
-/* Fills a zeroed struct from a node.  All mistakes are listed; what is wrong stays zero.  `path` names
- * the node in messages ("" for the root).  Local. */
+/* Fills a zeroed struct from a node.  All mistakes are listed; what is wrong stays zero.
+ * `path` names the node in messages ("" for the root).  Local. */
 void schema_read(const struct schema_reader *reader, const struct schema_key *table,
                  const struct yaml_tree_node *node, const char *path, void *into);
 
@@ -96,7 +97,8 @@ void schema_reference(FILE *out, const struct schema_key *table);
 /* The candidate nearest to a word when it is near enough to be meant; else NULL. */
 const char *schema_suggestion(const char *word, const char *const *candidates, int n);
 
-/* A path relative to the folder of `file`, which names it, made absolute.  The caller frees it. */
+/* A path relative to the folder of `file`, which names it, made absolute.  The caller frees
+ * it. */
 char *schema_path(const char *path, const char *file);
 
 /* A double as text, as short as reads back equal. */

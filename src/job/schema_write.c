@@ -1,9 +1,9 @@
 /*
  * Writing a struct back as YAML by the table, every default written out.
  *
- * The text is canonical: equal structs give equal bytes, and a double has as many digits as it takes to
- * read back equal.  Groups and lists are written in block style; lists of numbers in flow style; units
- * stand as comments.
+ * The text is canonical: equal structs give equal bytes, and a double has as many digits as it
+ * takes to read back equal.  Groups and lists are written in block style; lists of numbers in
+ * flow style; units stand as comments.
  */
 #include "job/schema.h"
 

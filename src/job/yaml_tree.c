@@ -1,8 +1,9 @@
 /*
- * The text is looked at twice.  A first pass over the bytes finds what libyaml reports badly or not at
- * the right place (invalid UTF-8, control characters, tabs that indent).  Then libyaml's events build
- * the tree, with a stack of open containers.  libyaml stops at the first error of syntax, so there is
- * at most one of those; everything that the schema finds later is listed in full.
+ * The text is looked at twice.  A first pass over the bytes finds what libyaml reports badly or
+ * not at the right place (invalid UTF-8, control characters, tabs that indent).  Then libyaml's
+ * events build the tree, with a stack of open containers.  libyaml stops at the first error of
+ * syntax, so there is at most one of those; everything that the schema finds later is listed in
+ * full.
  */
 #include "job/yaml_tree.h"
 
@@ -428,7 +429,8 @@ static char *file_bytes(int descriptor, const char *path, size_t *n, struct mist
     if (about.st_size > YAML_TREE_MAX_BYTES) {
         mistakes_add(
             mistakes, path, 1, 1,
-            "has %lld bytes; at most %d (4 MiB) are expected (many spheres belong in a CSV file)",
+            "has %lld bytes; at most %d (4 MiB) are expected (many spheres belong in a CSV "
+            "file)",
             (long long)about.st_size, YAML_TREE_MAX_BYTES);
         return NULL;
     }

@@ -1,9 +1,10 @@
 /*
- * A YAML file as a tree of nodes that know where they stand, so that every later message can name
- * file, line and column.
+ * A YAML file as a tree of nodes that know where they stand, so that every later message can
+ * name file, line and column.
  *
- * Plain YAML only: no anchors and aliases (a few lines of them can expand to gigabytes), no tags, one
- * document.  Size, depth and number of nodes are capped.  All mistakes of the text go to a list.
+ * Plain YAML only: no anchors and aliases (a few lines of them can expand to gigabytes), no
+ * tags, one document.  Size, depth and number of nodes are capped.  All mistakes of the text go
+ * to a list.
  */
 #ifndef TREMIE_JOB_YAML_TREE_H
 #define TREMIE_JOB_YAML_TREE_H
@@ -28,18 +29,18 @@ struct yaml_tree_node {
     struct yaml_tree_node *first, *last, *next;
 };
 
-/* Nodes and texts live in one arena, so nodes of several trees may be linked to each other as long as
- * all the trees live. */
+/* Nodes and texts live in one arena, so nodes of several trees may be linked to each other
+ * as long as all the trees live. */
 struct yaml_tree {
     struct yaml_tree_node *root; /* NULL when nothing could be read */
     struct yaml_tree_chunk *chunks;
 };
 
-/* Reads a file; false with mistakes listed when there is any.  The root is NULL when they forbid to
- * look further (a key given twice does not).  Local. */
+/* Reads a file; false with mistakes listed when there is any.  The root is NULL when they
+ * forbid to look further (a key given twice does not).  Local. */
 bool yaml_tree_read(struct yaml_tree *tree, const char *path, struct mistakes *mistakes);
-/* Reads a text of n bytes; `file` is what messages call it, and columns of the first line count from
- * `column`.  No cap on size or nodes: for texts of our own. */
+/* Reads a text of n bytes; `file` is what messages call it, and columns of the first line
+ * count from `column`.  No cap on size or nodes: for texts of our own. */
 bool yaml_tree_parse(struct yaml_tree *tree, const char *file, int column, const char *text,
                      size_t n, struct mistakes *mistakes);
 void yaml_tree_clear(struct yaml_tree *tree);

@@ -81,14 +81,17 @@ static const char shapes[] =
 
     START SPHERES
     "bodies:\n"
-    "  - {name: a, material: ore, geometry: {kind: plane, point: [0, 0, 1 cm], normal: [0, 0, 2],"
+    "  - {name: a, material: ore, geometry: {kind: plane, point: [0, 0, 1 cm], normal: [0, 0, "
+    "2],"
     " extent: 2}}\n"
     "  - {name: b, material: ore, geometry: {kind: box, min: [0, 0, 0], max: [1, 1, 1],"
     " open: [top, x_min]}}\n"
-    "  - {name: c, material: ore, geometry: {kind: hopper, top: [6, 6], outlet: [1, 2], z: [3, 6],"
+    "  - {name: c, material: ore, geometry: {kind: hopper, top: [6, 6], outlet: [1, 2], z: [3, "
+    "6],"
     " centre: [1, 0]}, motion: {velocity: [1 mm/s, 0, 0], rotation: {point: [0, 0, 1],"
     " axis: [0, 3, 4], rate: 2}, start: 0.5, stop: 1}}\n"
-    "  - {name: d, material: ore, geometry: {kind: mesh, vertices: [[0, 0, 0], [1, 0, 0], [1, 1, 0],"
+    "  - {name: d, material: ore, geometry: {kind: mesh, vertices: [[0, 0, 0], [1, 0, 0], [1, "
+    "1, 0],"
     " [0, 1 mm, 0]], facets: [[0, 1, 2], [0, 1, 2, 3]]}}\n";
 
 TEST(bodies_of_all_shapes)
@@ -237,7 +240,8 @@ TEST(what_does_not_fit_together)
     EXPECT_ONE(
         BODY("kind: mesh, vertices: [[0, 0, 0], [1, 0, 0], [2, 1, 0]], facets: [[0, 1, 3]]"), 6,
         115,
-        "bodies.0.geometry.facets.0 names a vertex that is not there; 3 or 4 different vertices "
+        "bodies.0.geometry.facets.0 names a vertex that is not there; 3 or 4 different "
+        "vertices "
         "from 0 to 2 that span an area are expected");
     EXPECT_ONE(
         BODY("kind: plane, point: [0, 0, 0], normal: [0, 0, 0], extent: 1"), 6, 88,
@@ -407,11 +411,16 @@ static const char everything[] =
     "  - {name: true, material: ore, radius: 33 mm, velocity: [1, 2, 3], spin: [0, 100 rpm, 0],"
     " packing: {kind: lattice, count: 1, spacing: 1, corner: [0, 0, 0], size: [1, 1]}}\n"
     "bodies:\n"
-    "  - {name: a, material: ore, geometry: {kind: plane, point: [0, 0, 0.1], normal: [1, 2, 3],"
-    " extent: 2}, motion: {rotation: {point: [0.1, 0.2, 0.3], axis: [1, 1, 1], rate: 33 rpm}, stop: 1}}\n"
-    "  - {name: b, material: ore, geometry: {kind: box, min: [0, 0, 0], max: [1, 1, 1], open: top}}\n"
-    "  - {name: c, material: ore, geometry: {kind: hopper, top: [6, 6], outlet: [1, 2], z: [3, 6]}}\n"
-    "  - {name: d, material: ore, geometry: {kind: mesh, vertices: [[0, 0, 0], [1, 0, 0], [1, 1, 0],"
+    "  - {name: a, material: ore, geometry: {kind: plane, point: [0, 0, 0.1], normal: [1, 2, "
+    "3],"
+    " extent: 2}, motion: {rotation: {point: [0.1, 0.2, 0.3], axis: [1, 1, 1], rate: 33 rpm}, "
+    "stop: 1}}\n"
+    "  - {name: b, material: ore, geometry: {kind: box, min: [0, 0, 0], max: [1, 1, 1], open: "
+    "top}}\n"
+    "  - {name: c, material: ore, geometry: {kind: hopper, top: [6, 6], outlet: [1, 2], z: [3, "
+    "6]}}\n"
+    "  - {name: d, material: ore, geometry: {kind: mesh, vertices: [[0, 0, 0], [1, 0, 0], [1, "
+    "1, 0],"
     " [0, 0.1, 1e-17]], facets: [[0, 1, 2], [0, 1, 2, 3]]}}\n"
     "sections: [{name: s, point: [0, 0, 0.7], normal: [1, 1, 0]}]\n"
     "domain: {min: [-1, -1, -1], max: [9, 9, 9], leavers: remove}\n"
