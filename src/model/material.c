@@ -19,7 +19,7 @@ static double shear_modulus(const struct job_material *material)
     return material->young / (2.0 * (1.0 + material->poisson)); /* [Pa] */
 }
 
-/* Equations (1.1), (1.2), (1.5), (1.9), (1.13); the damping ratio from (1.19). */
+/* (1.1), (1.2), (1.5), (1.6), (1.9), (1.12). */
 static struct material_pair pair_of(const struct job_material *a, const struct job_material *b,
                                     const struct job_pair *asked)
 {
