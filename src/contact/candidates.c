@@ -7,8 +7,10 @@
 #include "model/order.h"
 #include "model/sphere.h"
 
-/* Upper bound of each level's reach as a multiple of the least reach; the last takes the rest. */
-static const double LEVEL_BOUND[CANDIDATES_LEVELS] = {1.3, 2.6, 5.2, 10.4, 20.8, 41.6, 83.2, 1e300};
+/* Upper bound of each level's reach as a multiple of the least reach; the last takes the
+ * rest. */
+static const double LEVEL_BOUND[CANDIDATES_LEVELS] = {1.3,  2.6,  5.2,  10.4,
+                                                      20.8, 41.6, 83.2, 1e300};
 
 void candidates_clear(struct candidates *candidates)
 {
@@ -30,7 +32,8 @@ static void number_places(struct candidates *candidates, const struct spheres *s
 {
     const int n_owned = spheres->n_owned, n_all = spheres->n_all;
     if (n_all > candidates->place_capacity) {
-        const int capacity = (int)array_capacity((size_t)candidates->place_capacity, (size_t)n_all);
+        const int capacity =
+            (int)array_capacity((size_t)candidates->place_capacity, (size_t)n_all);
         free(candidates->place);
         free(candidates->at);
         free(candidates->row_end);
@@ -44,8 +47,9 @@ static void number_places(struct candidates *candidates, const struct spheres *s
     int owned = 0, ghost = n_owned;
     for (int place = 0; place < n_all; place++) {
         const bool take_owned =
-            ghost >= n_all || (owned < n_owned && order_before(spheres->order_cell[owned], spheres->id[owned],
-                                                               spheres->order_cell[ghost], spheres->id[ghost]));
+            ghost >= n_all ||
+            (owned < n_owned && order_before(spheres->order_cell[owned], spheres->id[owned],
+                                             spheres->order_cell[ghost], spheres->id[ghost]));
         const int i = take_owned ? owned++ : ghost++;
         candidates->place[i] = place;
         candidates->at[place] = i;
@@ -58,8 +62,10 @@ static void reserve_found(struct candidates *candidates, int needed)
         return;
     const size_t old = (size_t)candidates->found_capacity;
     const size_t capacity = array_capacity(old, (size_t)needed);
-    candidates->found_low = array_resize_rows(candidates->found_low, old, capacity, sizeof(int));
-    candidates->found_high = array_resize_rows(candidates->found_high, old, capacity, sizeof(int));
+    candidates->found_low =
+        array_resize_rows(candidates->found_low, old, capacity, sizeof(int));
+    candidates->found_high =
+        array_resize_rows(candidates->found_high, old, capacity, sizeof(int));
     candidates->found_capacity = (int)capacity;
 }
 
@@ -75,9 +81,10 @@ static inline int tag_of(int place, bool ghost)
     return place * 2 + (ghost ? 1 : 0);
 }
 
-/* Appends the pairs of the seeker with the run [begin, end) of the grid; returns the new number. */
-static inline int scan(struct candidates *candidates, const struct cell_grid *grid, const struct seeker *seeker,
-                       int begin, int end, int n)
+/* Appends the pairs of the seeker with the run [begin, end) of the grid; returns the new
+ * number. */
+static inline int scan(struct candidates *candidates, const struct cell_grid *grid,
+                       const struct seeker *seeker, int begin, int end, int n)
 {
     reserve_found(candidates, n + (end - begin));
     int *low = candidates->found_low, *high = candidates->found_high;
@@ -94,13 +101,15 @@ static inline int scan(struct candidates *candidates, const struct cell_grid *gr
     return n;
 }
 
-/* Pairs within one level: each cell with itself and the half of its neighbours that follow it. */
+/* Pairs within one level: each cell with itself and the half of its neighbours that follow
+ * it. */
 static int scan_within(struct candidates *candidates, const struct cell_grid *grid, int n)
 {
     const int nx = grid->size[0], nxy = grid->size[0] * grid->size[1];
     const int offsets[4] = {nx, nxy - nx, nxy, nxy + nx};
     for (int k = 0; k < grid->n; k++) {
-        const struct seeker seeker = {grid->x[k], grid->y[k], grid->z[k], grid->reach[k], grid->tag[k]};
+        const struct seeker seeker = {grid->x[k], grid->y[k], grid->z[k], grid->reach[k],
+                                      grid->tag[k]};
         const int cell = grid->cell[k];
         n = scan(candidates, grid, &seeker, k + 1, grid->begin[cell + 2], n);
         for (int o = 0; o < 4; o++) {
@@ -112,19 +121,24 @@ static int scan_within(struct candidates *candidates, const struct cell_grid *gr
 }
 
 /* Pairs of the points of a higher level with those of a lower one. */
-static int scan_across(struct candidates *candidates, const struct cell_grid *high, const struct cell_grid *low,
-                       int n)
+static int scan_across(struct candidates *candidates, const struct cell_grid *high,
+                       const struct cell_grid *low, int n)
 {
     for (int k = 0; k < high->n && low->n > 0; k++) {
-        const struct seeker seeker = {high->x[k], high->y[k], high->z[k], high->reach[k], high->tag[k]};
+        const struct seeker seeker = {high->x[k], high->y[k], high->z[k], high->reach[k],
+                                      high->tag[k]};
         const double window = seeker.reach + low->reach_max;
-        const int x0 = cell_grid_along(low, 0, seeker.x - window), x1 = cell_grid_along(low, 0, seeker.x + window);
-        const int y0 = cell_grid_along(low, 1, seeker.y - window), y1 = cell_grid_along(low, 1, seeker.y + window);
-        const int z0 = cell_grid_along(low, 2, seeker.z - window), z1 = cell_grid_along(low, 2, seeker.z + window);
+        const int x0 = cell_grid_along(low, 0, seeker.x - window),
+                  x1 = cell_grid_along(low, 0, seeker.x + window);
+        const int y0 = cell_grid_along(low, 1, seeker.y - window),
+                  y1 = cell_grid_along(low, 1, seeker.y + window);
+        const int z0 = cell_grid_along(low, 2, seeker.z - window),
+                  z1 = cell_grid_along(low, 2, seeker.z + window);
         for (int z = z0; z <= z1; z++) {
             for (int y = y0; y <= y1; y++) {
                 const int row = (z * low->size[1] + y) * low->size[0];
-                n = scan(candidates, low, &seeker, low->begin[row + x0], low->begin[row + x1 + 1], n);
+                n = scan(candidates, low, &seeker, low->begin[row + x0],
+                         low->begin[row + x1 + 1], n);
             }
         }
     }
@@ -150,13 +164,14 @@ static void fill_levels(struct candidates *candidates, const struct spheres *sph
             if (!(reach >= bound_before && reach < bound))
                 continue;
             const double *x = sphere_position(spheres, i);
-            candidates->points[n++] =
-                (struct cell_point){x[0], x[1], x[2], reach, tag_of(candidates->place[i], i >= spheres->n_owned)};
+            candidates->points[n++] = (struct cell_point){
+                x[0], x[1], x[2], reach, tag_of(candidates->place[i], i >= spheres->n_owned)};
             reach_max = reach > reach_max ? reach : reach_max;
         }
         n_filed += n;
         /* A little wider than needed, so that rounding in the cell index loses nothing. */
-        cell_grid_fill(&candidates->grid[l], n, candidates->points, n > 0 ? 2.0000001 * reach_max : 1.0);
+        cell_grid_fill(&candidates->grid[l], n, candidates->points,
+                       n > 0 ? 2.0000001 * reach_max : 1.0);
         bound_before = bound;
     }
 }
@@ -218,12 +233,15 @@ static void sort_found(struct candidates *candidates, int n_found, int n_places)
     candidates->n = n_found;
 }
 
-void candidates_search(struct candidates *candidates, const struct spheres *spheres, bool all_pairs)
+void candidates_search(struct candidates *candidates, const struct spheres *spheres,
+                       bool all_pairs)
 {
     number_places(candidates, spheres);
-    const int n_found = all_pairs ? find_all_pairs(candidates, spheres) : find_by_grids(candidates, spheres);
+    const int n_found =
+        all_pairs ? find_all_pairs(candidates, spheres) : find_by_grids(candidates, spheres);
     if (n_found > candidates->capacity) {
-        candidates->capacity = (int)array_capacity((size_t)candidates->capacity, (size_t)n_found);
+        candidates->capacity =
+            (int)array_capacity((size_t)candidates->capacity, (size_t)n_found);
         free(candidates->first);
         free(candidates->second);
         candidates->first = array_allocate_rows((size_t)candidates->capacity, sizeof(int));

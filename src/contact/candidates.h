@@ -1,12 +1,13 @@
 /*
  * Global search: the pairs of spheres that may touch before the next search.
  *
- * A pair is a candidate when its distance is below the sum of both radii and both allowances; at least
- * one of the two is owned.  Spheres are filed in levels by reach (radius + allowance), each level in a
- * grid whose cells fit its largest reach: spheres of a level meet each other in their own grid, and a
- * sphere of a higher level looks into all lower grids with its own reach.  So neither a few fast spheres
- * nor a few large ones widen the cells of all the rest.  Pairs come out sorted by canonical order over
- * owned spheres and ghosts together, the first before the second.
+ * A pair is a candidate when its distance is below the sum of both radii and both allowances;
+ * at least one of the two is owned.  Spheres are filed in levels by reach (radius + allowance),
+ * each level in a grid whose cells fit its largest reach: spheres of a level meet each other in
+ * their own grid, and a sphere of a higher level looks into all lower grids with its own reach.
+ * So neither a few fast spheres nor a few large ones widen the cells of all the rest.  Pairs
+ * come out sorted by canonical order over owned spheres and ghosts together, the first before
+ * the second.
  * Drawback: a continuous size distribution pays for looking into several grids.
  */
 #ifndef TREMIE_CONTACT_CANDIDATES_H
@@ -37,6 +38,7 @@ struct candidates {
 void candidates_clear(struct candidates *candidates);
 /* Searches among all spheres here with their present allowances.  all_pairs: every pair is a
  * candidate, for comparison.  Local. */
-void candidates_search(struct candidates *candidates, const struct spheres *spheres, bool all_pairs);
+void candidates_search(struct candidates *candidates, const struct spheres *spheres,
+                       bool all_pairs);
 
 #endif

@@ -35,8 +35,10 @@ static void reserve(struct cell_grid *grid, int n)
     grid->scratch = array_allocate_rows(capacity, sizeof(int));
 }
 
-/* Chooses cells for the extent [low, high]: a few stray points far away must not make millions. */
-static void choose_cells(struct cell_grid *grid, const double low[3], const double high[3], double width)
+/* Chooses cells for the extent [low, high]: a few stray points far away must not make
+ * millions. */
+static void choose_cells(struct cell_grid *grid, const double low[3], const double high[3],
+                         double width)
 {
     const double cells_max = 8.0 * grid->n + 64.0;
     double count[3];
@@ -71,7 +73,8 @@ int cell_grid_along(const struct cell_grid *grid, int k, double x)
     return cell < (double)grid->size[k] - 1.0 ? (int)cell : grid->size[k] - 1;
 }
 
-void cell_grid_fill(struct cell_grid *grid, int n, const struct cell_point *points, double width)
+void cell_grid_fill(struct cell_grid *grid, int n, const struct cell_point *points,
+                    double width)
 {
     reserve(grid, n);
     grid->n = n;
@@ -89,7 +92,8 @@ void cell_grid_fill(struct cell_grid *grid, int n, const struct cell_point *poin
     int *begin = grid->begin;
     memset(begin, 0, ((size_t)grid->n_cells + 1) * sizeof *begin);
     for (int p = 0; p < n; p++) {
-        const int cx = cell_grid_along(grid, 0, points[p].x), cy = cell_grid_along(grid, 1, points[p].y);
+        const int cx = cell_grid_along(grid, 0, points[p].x),
+                  cy = cell_grid_along(grid, 1, points[p].y);
         const int cz = cell_grid_along(grid, 2, points[p].z);
         grid->scratch[p] = (cz * grid->size[1] + cy) * grid->size[0] + cx;
         begin[grid->scratch[p]]++;

@@ -1,8 +1,9 @@
 /*
  * A grid of cells over points with a reach: the ground of global search.
  *
- * Points are copied in the order of their cells, row by row, so that a row of neighbouring cells is one
- * contiguous run.  A frame of empty cells surrounds the grid: neighbours need no bounds checks.
+ * Points are copied in the order of their cells, row by row, so that a row of neighbouring
+ * cells is one contiguous run.  A frame of empty cells surrounds the grid: neighbours need no
+ * bounds checks.
  */
 #ifndef TREMIE_CONTACT_CELL_GRID_H
 #define TREMIE_CONTACT_CELL_GRID_H
@@ -16,10 +17,10 @@ struct cell_grid {
     int *begin;        /* first place of a cell; n_cells + 1 entries */
     int *scratch;      /* cell of each point in the caller's order */
     int n_cells, cell_capacity;
-    int size[3];       /* cells a direction, frame included */
-    double low[3];     /* corner of the first cell within the frame [m] */
-    double width;      /* [m] */
-    double reach_max;  /* [m] */
+    int size[3];      /* cells a direction, frame included */
+    double low[3];    /* corner of the first cell within the frame [m] */
+    double width;     /* [m] */
+    double reach_max; /* [m] */
 };
 
 /* One point to be filed. */
@@ -29,10 +30,12 @@ struct cell_point {
 };
 
 void cell_grid_clear(struct cell_grid *grid);
-/* Files n points in cells at least `width` wide (wider where that would give many more cells than
- * points). */
-void cell_grid_fill(struct cell_grid *grid, int n, const struct cell_point *points, double width);
-/* Index of the cell (within the frame) along direction k; outside the grid it is the frame's. */
+/* Files n points in cells at least `width` wide (wider where that would give many more cells
+ * than points). */
+void cell_grid_fill(struct cell_grid *grid, int n, const struct cell_point *points,
+                    double width);
+/* Index of the cell (within the frame) along direction k; outside the grid it is the
+ * frame's. */
 int cell_grid_along(const struct cell_grid *grid, int k, double x);
 
 #endif

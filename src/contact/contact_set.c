@@ -1,6 +1,7 @@
 /*
- * See contact_set.h.  History is carried from one list to the next by finding each touching contact's
- * pair in the row of its first sphere: rows are short, and an ordinary search moves nothing in memory.
+ * See contact_set.h.  History is carried from one list to the next by finding each touching
+ * contact's pair in the row of its first sphere: rows are short, and an ordinary search moves
+ * nothing in memory.
  */
 #include "contact/contact_set.h"
 
@@ -36,7 +37,8 @@ static void list_reserve(struct contact_list *list, int n)
     const int needed = n + CONTACT_PAD + CONTACT_AHEAD;
     if (needed <= list->capacity)
         return;
-    const size_t capacity = array_capacity((size_t)list->capacity, (size_t)needed + (size_t)needed / 8);
+    const size_t capacity =
+        array_capacity((size_t)list->capacity, (size_t)needed + (size_t)needed / 8);
     list_clear(list);
     list->capacity = (int)capacity;
     list->first = array_allocate_rows(capacity, sizeof(int));
@@ -59,7 +61,8 @@ static void list_pad(struct contact_list *list, int dummy)
 }
 
 /* Inner allowances: how far each sphere may go before the inner list is stale. */
-static void choose_allowances(struct spheres *spheres, double *inner, double base, double horizon, bool keep_all)
+static void choose_allowances(struct spheres *spheres, double *inner, double base,
+                              double horizon, bool keep_all)
 {
     for (int i = 0; i < spheres->n_all; i++) {
         const double *v = sphere_velocity(spheres, i);
@@ -110,18 +113,21 @@ static int find_entry(const struct contact_set *contacts, int first, int second)
     return -1;
 }
 
-/* Seen from the other side, the tangential force turns round; contact radius and normal velocity stay. */
-static void put_history(struct contact_list *list, int entry, const double history[CONTACT_LANES], bool turned)
+/* Seen from the other side, the tangential force turns round; contact radius and normal
+ * velocity stay. */
+static void put_history(struct contact_list *list, int entry,
+                        const double history[CONTACT_LANES], bool turned)
 {
     for (int l = 0; l < CONTACT_LANES; l++)
         list->history[l][entry] = turned && l < CONTACT_RADIUS_LANE ? -history[l] : history[l];
 }
 
-static void place_history(struct contact_set *contacts, const struct candidates *candidates, int first,
-                          int second, const double history[CONTACT_LANES])
+static void place_history(struct contact_set *contacts, const struct candidates *candidates,
+                          int first, int second, const double history[CONTACT_LANES])
 {
     const bool turned = candidates->place[first] > candidates->place[second];
-    const int entry = turned ? find_entry(contacts, second, first) : find_entry(contacts, first, second);
+    const int entry =
+        turned ? find_entry(contacts, second, first) : find_entry(contacts, first, second);
     CHECK(entry >= 0, "a touching contact is not in the list");
     put_history(&contacts->now, entry, history, turned);
 }
@@ -136,7 +142,8 @@ static void carry_history(struct contact_set *contacts, const struct candidates 
         const int first = moved == NULL ? before->first[k] : moved[before->first[k]];
         const int second = moved == NULL ? before->second[k] : moved[before->second[k]];
         /* Contacts between what others own now are theirs to remember. */
-        if (first < 0 || second < 0 || (first >= spheres->n_owned && second >= spheres->n_owned))
+        if (first < 0 || second < 0 ||
+            (first >= spheres->n_owned && second >= spheres->n_owned))
             continue;
         double history[CONTACT_LANES];
         for (int l = 0; l < CONTACT_LANES; l++)
@@ -146,14 +153,16 @@ static void carry_history(struct contact_set *contacts, const struct candidates 
 }
 
 void contact_set_prune(struct contact_set *contacts, const struct candidates *candidates,
-                       struct spheres *spheres, double base, double horizon, bool keep_all, const int *moved)
+                       struct spheres *spheres, double base, double horizon, bool keep_all,
+                       const int *moved)
 {
     const struct contact_list swap = contacts->before;
     contacts->before = contacts->now;
     contacts->now = swap;
     list_reserve(&contacts->now, candidates->n);
     if (spheres->n_all > contacts->row_capacity) {
-        const size_t capacity = array_capacity((size_t)contacts->row_capacity, (size_t)spheres->n_all);
+        const size_t capacity =
+            array_capacity((size_t)contacts->row_capacity, (size_t)spheres->n_all);
         free(contacts->row_begin);
         free(contacts->row_end);
         contacts->row_begin = array_allocate_rows(capacity, sizeof(int));
@@ -169,7 +178,8 @@ void contact_set_prune(struct contact_set *contacts, const struct candidates *ca
 }
 
 int contact_set_records(const struct contact_set *contacts, const struct spheres *spheres,
-                        const unsigned char *chosen, struct contact_record **records, int *capacity)
+                        const unsigned char *chosen, struct contact_record **records,
+                        int *capacity)
 {
     const struct contact_list *list = &contacts->now;
     int n = 0;
@@ -179,7 +189,9 @@ int contact_set_records(const struct contact_set *contacts, const struct spheres
         const int i = list->first[k], j = list->second[k];
         const bool turned = spheres->id[i] > spheres->id[j];
         const int lower = turned ? j : i, owned = spheres->n_owned;
-        const bool wanted = chosen == NULL ? lower < owned : (i < owned && chosen[i]) || (j < owned && chosen[j]);
+        const bool wanted = chosen == NULL
+                                ? lower < owned
+                                : (i < owned && chosen[i]) || (j < owned && chosen[j]);
         if (!wanted)
             continue;
         ARRAY_GROW(*records, n + 1, *capacity);

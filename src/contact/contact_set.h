@@ -1,10 +1,11 @@
 /*
  * The contacts between spheres on one rank and what they remember.
  *
- * A contact is an entry (first, second) of the inner list, first before second in canonical order,
- * sorted by it over owned spheres and ghosts together; at least one of the two is owned.  History lies
- * beside it, one array a lane:
- *   0..2 tangential force, as felt by the second sphere's surface [N] (sign: see physics/contact_law.h)
+ * A contact is an entry (first, second) of the inner list, first before second in canonical
+ * order, sorted by it over owned spheres and ghosts together; at least one of the two is owned.
+ * History lies beside it, one array a lane:
+ *   0..2 tangential force, as felt by the second sphere's surface [N] (sign: see
+ *   physics/contact_law.h)
  *   3    contact radius of the last step [m]; > 0 exactly when the two touched
  *   4    normal relative velocity of the last step [m/s]
  * A contact that does not touch holds +0.0 in all lanes.
@@ -51,23 +52,26 @@ static inline bool contact_touches(const struct contact_list *list, int k)
 void contact_set_clear(struct contact_set *contacts);
 
 /*
- * Makes the inner list anew from the candidates: those pairs that may touch within the next `horizon`
- * seconds at 1.3 times the present speeds, or that are nearer than `base` [m] twice; sets the spheres'
- * inner allowances accordingly.  With keep_all every candidate is kept (allowances as for the search).
- * History of touching contacts is carried over; moved[] gives the present storage index of what was
- * index i when the list was made (-1: no longer here), NULL when nothing moved.  Local.
+ * Makes the inner list anew from the candidates: those pairs that may touch within the next
+ * `horizon` seconds at 1.3 times the present speeds, or that are nearer than `base` [m] twice;
+ * sets the spheres' inner allowances accordingly.  With keep_all every candidate is kept
+ * (allowances as for the search).  History of touching contacts is carried over; moved[] gives
+ * the present storage index of what was index i when the list was made (-1: no longer here),
+ * NULL when nothing moved.  Local.
  */
 void contact_set_prune(struct contact_set *contacts, const struct candidates *candidates,
-                       struct spheres *spheres, double base, double horizon, bool keep_all, const int *moved);
+                       struct spheres *spheres, double base, double horizon, bool keep_all,
+                       const int *moved);
 
-/* Records of touching contacts.  Those in which an owned sphere marked by chosen[] takes part, or, with
- * chosen NULL, those whose lower id is owned (each contact on exactly one rank).  *records grows (its
- * capacity too); returns their number.  Local. */
+/* Records of touching contacts.  Those in which an owned sphere marked by chosen[] takes part,
+ * or, with chosen NULL, those whose lower id is owned (each contact on exactly one rank).
+ * *records grows (its capacity too); returns their number.  Local. */
 int contact_set_records(const struct contact_set *contacts, const struct spheres *spheres,
-                        const unsigned char *chosen, struct contact_record **records, int *capacity);
+                        const unsigned char *chosen, struct contact_record **records,
+                        int *capacity);
 
-/* Puts a record's history where its pair (storage indices of first_id and second_id) is listed.  A pair
- * that is not listed is a mistake of ours.  Local. */
+/* Puts a record's history where its pair (storage indices of first_id and second_id) is listed.
+ * A pair that is not listed is a mistake of ours.  Local. */
 void contact_set_restore(struct contact_set *contacts, const struct candidates *candidates,
                          const struct contact_record *record, int first, int second);
 

@@ -1,7 +1,8 @@
 /*
  * Chooses among the kernels of pair_kernel_blocks.c by what the processor can do.
  *
- * The levels of x86-64 are asked for feature by feature, as gcc 12 and clang 14 understand them.
+ * The levels of x86-64 are asked for feature by feature, as gcc 12 and clang 14 understand
+ * them.
  */
 #include "contact/pair_kernel.h"
 

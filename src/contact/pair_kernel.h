@@ -1,9 +1,10 @@
 /*
  * The contact law for all listed pairs of spheres: the hot loop.
  *
- * The kernel exists several times, compiled for vectors of 2, 4 and 8 lanes; one is chosen when the
- * program starts.  All give the same bits: lanes never mix, each pair's arithmetic is one text
- * (physics/contact_law.h), and contributions reach a sphere's row one by one in the order of the list.
+ * The kernel exists several times, compiled for vectors of 2, 4 and 8 lanes; one is chosen when
+ * the program starts.  All give the same bits: lanes never mix, each pair's arithmetic is one
+ * text (physics/contact_law.h), and contributions reach a sphere's row one by one in the order
+ * of the list.
  */
 #ifndef TREMIE_CONTACT_PAIR_KERNEL_H
 #define TREMIE_CONTACT_PAIR_KERNEL_H
@@ -15,20 +16,22 @@
 #include "model/material.h"
 #include "model/sphere.h"
 
-/* Entries of first and second that must be there and hold valid indices behind n_padded: rows are
- * fetched that far ahead. */
+/* Entries of first and second that must be there and hold valid indices behind n_padded: rows
+ * are fetched that far ahead. */
 enum { PAIR_KERNEL_AHEAD = 128 };
 
 /*
- * What a kernel works on.  Pairs k = 0 .. n_padded - 1, n_padded a multiple of CONTACT_PAD; padding
- * pairs the two dummies, which lie apart.  Indices reach over owned spheres, ghosts and dummies,
- * first != second, and so do all arrays that they index, dissipated_tangential included.
+ * What a kernel works on.  Pairs k = 0 .. n_padded - 1, n_padded a multiple of CONTACT_PAD;
+ * padding pairs the two dummies, which lie apart.  Indices reach over owned spheres, ghosts and
+ * dummies, first != second, and so do all arrays that they index, dissipated_tangential
+ * included.
  *
- * Read: motion, spin, material, pairs.  Added to: the force rows of both spheres (force, torque, and
- * with the ledger on half of what friction and damping dissipate in spare lanes 3 and 7); with the
- * ledger on dissipated_tangential of the first.  Brought to the present: history.  Force rows must
- * not hold -0: a pair that does not touch adds zeros of either sign.  A pair that touched in the last
- * step must still be listed in this one, or the ledger misses the end of the contact.
+ * Read: motion, spin, material, pairs.  Added to: the force rows of both spheres (force,
+ * torque, and with the ledger on half of what friction and damping dissipate in spare lanes 3
+ * and 7); with the ledger on dissipated_tangential of the first.  Brought to the present:
+ * history.  Force rows must not hold -0: a pair that does not touch adds zeros of either sign.
+ * A pair that touched in the last step must still be listed in this one, or the ledger misses
+ * the end of the contact.
  */
 struct pair_kernel_work {
     int n_padded;
@@ -44,7 +47,8 @@ struct pair_kernel_work {
     double overlap_max;                /* out: largest overlap (1/R_i + 1/R_j) / 2 [-] */
 };
 
-/* Instruction sets, by what they ask of the processor: v2, v3 and v4 are the levels of x86-64. */
+/* Instruction sets, by what they ask of the processor: v2, v3 and v4 are the levels of
+ * x86-64. */
 enum pair_kernel_isa {
     PAIR_KERNEL_AUTO, /* the widest that runs */
     PAIR_KERNEL_GENERIC,
@@ -64,8 +68,8 @@ const char *pair_kernel_isa_name(enum pair_kernel_isa isa);
 /* Whether this program holds that kernel and this processor runs it. */
 bool pair_kernel_isa_runs(enum pair_kernel_isa isa);
 
-/* The kernel for spheres all of one material (uniform) or of several, with or without the energy
- * ledger.  The instruction set must run. */
+/* The kernel for spheres all of one material (uniform) or of several, with or without the
+ * energy ledger.  The instruction set must run. */
 struct pair_kernel pair_kernel_choose(enum pair_kernel_isa isa, bool uniform, bool ledger);
 
 #endif

@@ -3,15 +3,17 @@
  *
  * Compiled once for each instruction set, PAIR_KERNEL_ISA = 0 (generic), 2, 3, 4: see
  * config/compiler.  A sphere's data are rows of one cache line, so a block loads whole rows,
- * subtracts or adds the two of each pair, transposes them so that each component of all pairs lies in
- * one vector, applies the law, transposes the forces back and adds whole rows.  That is twice as
- * fast as gathering components, and leaves no scalar remainder: lists are padded with dummies.
+ * subtracts or adds the two of each pair, transposes them so that each component of all pairs
+ * lies in one vector, applies the law, transposes the forces back and adds whole rows.  That is
+ * twice as fast as gathering components, and leaves no scalar remainder: lists are padded with
+ * dummies.
  *
- * Rows of second members jump about in memory; they are fetched some blocks ahead, which more than
- * doubles the speed once the spheres outgrow the cache.
+ * Rows of second members jump about in memory; they are fetched some blocks ahead, which more
+ * than doubles the speed once the spheres outgrow the cache.
  *
- * Row after row is added in the order of the list, so a sphere's sum does not depend on the number of
- * lanes.  That serializes pairs of one sphere through memory; the law of the next block hides it.
+ * Row after row is added in the order of the list, so a sphere's sum does not depend on the
+ * number of lanes.  That serializes pairs of one sphere through memory; the law of the next
+ * block hides it.
  */
 #include "contact/pair_kernel_blocks.h"
 
@@ -74,7 +76,8 @@ LANES_INLINE void transpose_square(lanes *r)
 #endif
 }
 
-/* From WIDTH rows, part p of row l at r[WIDTH p + l], to 8 components, component c at r[c]; and back. */
+/* From WIDTH rows, part p of row l at r[WIDTH p + l], to 8 components, component c at r[c]; and
+ * back. */
 LANES_INLINE void transpose(lanes r[8])
 {
 #pragma GCC unroll 4

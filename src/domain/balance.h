@@ -1,9 +1,9 @@
 /*
  * When to repartition (the paper's low level), and with which weights.
  *
- * Ranks measure the time that they spend on their own spheres (contact laws, integration); waiting does not
- * count.  At a search the largest is compared with the mean; above the job's limit the boxes are cut
- * anew.  Clocks decide here, and may: nothing of it changes a result.
+ * Ranks measure the time that they spend on their own spheres (contact laws, integration);
+ * waiting does not count.  At a search the largest is compared with the mean; above the job's
+ * limit the boxes are cut anew.  Clocks decide here, and may: nothing of it changes a result.
  */
 #ifndef TREMIE_DOMAIN_BALANCE_H
 #define TREMIE_DOMAIN_BALANCE_H
@@ -24,12 +24,12 @@ struct balance {
     double imbalance; /* largest over mean at the last verdict [-] */
 };
 
-/* Compares the ranks' work since the last verdict; true when boxes should be cut anew.  Too short a
- * time gives no verdict.  Collective. */
+/* Compares the ranks' work since the last verdict; true when boxes should be cut anew.  Too
+ * short a time gives no verdict.  Collective. */
 bool balance_is_lost(struct balance *balance, const struct comm *comm, double limit);
 
-/* Cost of each owned sphere, in units of about a nanosecond a step: a constant, its contacts (or
- * candidates) and its facet contacts.  Local. */
+/* Cost of each owned sphere, in units of about a nanosecond a step: a constant, its contacts
+ * (or candidates) and its facet contacts.  Local. */
 void balance_weights(int64_t *weights, const struct spheres *spheres, enum job_weights kind,
                      const struct contact_list *contacts, const struct candidates *candidates,
                      const struct facet_contacts *facets);

@@ -40,7 +40,8 @@ int boxes_owner(const struct boxes *boxes, const double x[3])
     return -1 - node;
 }
 
-static void update_below(struct boxes *boxes, int node, const double low[3], const double high[3])
+static void update_below(struct boxes *boxes, int node, const double low[3],
+                         const double high[3])
 {
     if (node < 0) {
         for (int k = 0; k < 3; k++) {
@@ -62,13 +63,15 @@ static void update_below(struct boxes *boxes, int node, const double low[3], con
 void boxes_update(struct boxes *boxes)
 {
     const double infinity = (double)INFINITY;
-    const double low[3] = {-infinity, -infinity, -infinity}, high[3] = {infinity, infinity, infinity};
+    const double low[3] = {-infinity, -infinity, -infinity},
+                 high[3] = {infinity, infinity, infinity};
     update_below(boxes, boxes->n_nodes > 0 ? 0 : -1, low, high);
 }
 
-/* Cuts the block of cells begin <= cell < end along its longest side; returns the child's code. */
-static int grid_below(struct boxes *boxes, const int n[3], const double low[3], const double width[3],
-                      const int begin[3], const int end[3])
+/* Cuts the block of cells begin <= cell < end along its longest side; returns the child's
+ * code. */
+static int grid_below(struct boxes *boxes, const int n[3], const double low[3],
+                      const double width[3], const int begin[3], const int end[3])
 {
     int axis = 0;
     for (int k = 1; k < 3; k++)
@@ -92,10 +95,11 @@ static int grid_below(struct boxes *boxes, const int n[3], const double low[3], 
 
 void boxes_set_grid(struct boxes *boxes, const int n[3], struct vec3 low, struct vec3 high)
 {
-    CHECK(n[0] * n[1] * n[2] == boxes->n_ranks, "a grid of %d x %d x %d boxes on %d ranks", n[0], n[1], n[2],
-          boxes->n_ranks);
+    CHECK(n[0] * n[1] * n[2] == boxes->n_ranks, "a grid of %d x %d x %d boxes on %d ranks",
+          n[0], n[1], n[2], boxes->n_ranks);
     const double corner[3] = {low.x, low.y, low.z};
-    const double width[3] = {(high.x - low.x) / n[0], (high.y - low.y) / n[1], (high.z - low.z) / n[2]};
+    const double width[3] = {(high.x - low.x) / n[0], (high.y - low.y) / n[1],
+                             (high.z - low.z) / n[2]};
     const int begin[3] = {0, 0, 0};
     boxes->n_nodes = 0;
     grid_below(boxes, n, corner, width, begin, n);

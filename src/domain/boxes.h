@@ -1,7 +1,8 @@
 /*
- * Subdomains: axis-aligned boxes, one a rank, that tile space; a binary tree of cuts tells whose a
- * point is.  Boxes are half open (low <= x < high), so a plane of spheres on a cut has one owner;
- * outer boxes reach to infinity.  Every rank holds the whole tree: O(number of ranks), no more.
+ * Subdomains: axis-aligned boxes, one a rank, that tile space; a binary tree of cuts tells
+ * whose a point is.  Boxes are half open (low <= x < high), so a plane of spheres on a cut has
+ * one owner; outer boxes reach to infinity.  Every rank holds the whole tree: O(number of
+ * ranks), no more.
  */
 #ifndef TREMIE_DOMAIN_BOXES_H
 #define TREMIE_DOMAIN_BOXES_H
@@ -15,7 +16,7 @@ struct boxes_node {
 };
 
 struct boxes {
-    int n_ranks, n_nodes;       /* n_ranks - 1 nodes; node 0 is the root */
+    int n_ranks, n_nodes; /* n_ranks - 1 nodes; node 0 is the root */
     struct boxes_node *nodes;
     double (*low)[3], (*high)[3]; /* of each rank's box [m] */
 };

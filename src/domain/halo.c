@@ -67,7 +67,8 @@ static struct rank_boxes own_boxes(const struct comm *comm, const struct spheres
 {
     struct rank_boxes boxes;
     for (int l = 0; l < LEVELS; l++)
-        boxes.level[l] = (struct level_box){{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}, 0.0};
+        boxes.level[l] =
+            (struct level_box){{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}, 0.0};
     double least = 1e300;
     for (int i = 0; i < spheres->n_owned; i++) {
         const double reach = reach_of(spheres, i);
@@ -132,7 +133,8 @@ static bool is_needed(const struct spheres *spheres, int i, const struct rank_bo
     return false;
 }
 
-static void choose_sends(struct halo *halo, const struct comm *comm, const struct spheres *spheres)
+static void choose_sends(struct halo *halo, const struct comm *comm,
+                         const struct spheres *spheres)
 {
     const struct rank_boxes own = own_boxes(comm, spheres);
     struct rank_boxes *all = halo->all_boxes;
@@ -153,7 +155,8 @@ static void choose_sends(struct halo *halo, const struct comm *comm, const struc
     }
 }
 
-static void send_ghosts(struct halo *halo, const struct comm *comm, const struct spheres *spheres)
+static void send_ghosts(struct halo *halo, const struct comm *comm,
+                        const struct spheres *spheres)
 {
     comm_mail_begin(&halo->mail);
     for (int p = 0; p < halo->n_peers; p++) {
@@ -181,7 +184,8 @@ static void receive_ghosts(struct halo *halo, struct spheres *spheres)
             for (int f = 0; f < SPHERE_N_FIELDS; f++) {
                 const struct field_view view = sphere_view(spheres, f);
                 if (sphere_fields[f].use & FIELD_GHOST)
-                    comm_mail_unpack(&halo->mail, peer->rank, field_at(&view, n), field_size(&sphere_fields[f]));
+                    comm_mail_unpack(&halo->mail, peer->rank, field_at(&view, n),
+                                     field_size(&sphere_fields[f]));
                 else
                     memset(field_at(&view, n), 0, field_size(&sphere_fields[f]));
             }
@@ -207,13 +211,15 @@ static void sort_ghosts(struct halo *halo, struct spheres *spheres)
         halo->key_capacity = (int)capacity;
     }
     for (int g = 0; g < n; g++)
-        halo->keys[g] = (struct order_key){spheres->order_cell[n_owned + g], spheres->id[n_owned + g], g};
+        halo->keys[g] =
+            (struct order_key){spheres->order_cell[n_owned + g], spheres->id[n_owned + g], g};
     order_sort(halo->keys, n, halo->key_scratch);
     for (int f = 0; f < SPHERE_N_FIELDS; f++) {
         const struct field_view view = sphere_view(spheres, f);
         const size_t size = field_size(&sphere_fields[f]);
         for (int g = 0; g < n; g++)
-            memcpy(halo->field_scratch + (size_t)g * size, field_at(&view, n_owned + halo->keys[g].index), size);
+            memcpy(halo->field_scratch + (size_t)g * size,
+                   field_at(&view, n_owned + halo->keys[g].index), size);
         for (int g = 0; g < n; g++)
             memcpy(field_at(&view, n_owned + g), halo->field_scratch + (size_t)g * size, size);
     }
@@ -233,7 +239,8 @@ static void count_classes(struct halo *halo, const struct comm *comm, const stru
     const double *low = boxes->low[comm->rank], *high = boxes->high[comm->rank];
     halo->n_internal = 0;
     for (int i = 0; i < spheres->n_owned; i++) {
-        const double *x = sphere_position(spheres, i), margin = sphere_radius(spheres, i) + half_buffer;
+        const double *x = sphere_position(spheres, i),
+                     margin = sphere_radius(spheres, i) + half_buffer;
         bool internal = true;
         for (int k = 0; k < 3; k++)
             internal = internal && x[k] - margin >= low[k] && x[k] + margin <= high[k];
@@ -279,7 +286,8 @@ static void pack_motion(struct halo_peer *peer, const struct spheres *spheres)
 static void unpack_motion(const struct halo_peer *peer, struct spheres *spheres)
 {
     for (int k = 0; k < peer->n_receive; k++) {
-        double *motion = spheres->motion[peer->receive[k]].lane, *spin = spheres->spin[peer->receive[k]].lane;
+        double *motion = spheres->motion[peer->receive[k]].lane,
+               *spin = spheres->spin[peer->receive[k]].lane;
         const double *in = peer->in + MOTION * k, radius = motion[3];
         memcpy(motion, in, 3 * sizeof *in);
         memcpy(motion + 4, in + 3, 3 * sizeof *in);
@@ -296,15 +304,15 @@ void halo_refresh(struct halo *halo, const struct comm *comm, struct spheres *sp
     for (int p = 0; p < halo->n_peers; p++) {
         struct halo_peer *peer = &halo->peers[p];
         if (peer->n_receive > 0)
-            COMM_CHECK(MPI_Irecv(peer->in, MOTION * peer->n_receive, MPI_DOUBLE, peer->rank, 2, comm->mpi,
-                                 &halo->requests[n++]));
+            COMM_CHECK(MPI_Irecv(peer->in, MOTION * peer->n_receive, MPI_DOUBLE, peer->rank, 2,
+                                 comm->mpi, &halo->requests[n++]));
     }
     for (int p = 0; p < halo->n_peers; p++) {
         struct halo_peer *peer = &halo->peers[p];
         pack_motion(peer, spheres);
         if (peer->n_send > 0)
-            COMM_CHECK(MPI_Isend(peer->out, MOTION * peer->n_send, MPI_DOUBLE, peer->rank, 2, comm->mpi,
-                                 &halo->requests[n++]));
+            COMM_CHECK(MPI_Isend(peer->out, MOTION * peer->n_send, MPI_DOUBLE, peer->rank, 2,
+                                 comm->mpi, &halo->requests[n++]));
     }
     COMM_CHECK(MPI_Waitall(n, halo->requests, MPI_STATUSES_IGNORE));
     for (int p = 0; p < halo->n_peers; p++)

@@ -1,15 +1,16 @@
 /*
  * Ghosts: copies of other ranks' spheres that may touch ours.
  *
- * Who needs a copy (the reach rule): an owned sphere is sent to a rank when its own reach (radius and
- * allowance) meets the box of that rank's owned centres grown by their largest reach, level by level of
- * reach, neighbours or not.  Then whatever pair may touch before the next search is complete on every
- * rank that owns a part of it, also with walls off the cut, spheres larger than a subdomain and
- * subdomains thinner than a radius.  The boxes of centres are known to all: O(ranks) numbers.
+ * Who needs a copy (the reach rule): an owned sphere is sent to a rank when its own reach
+ * (radius and allowance) meets the box of that rank's owned centres grown by their largest
+ * reach, level by level of reach, neighbours or not.  Then whatever pair may touch before the
+ * next search is complete on every rank that owns a part of it, also with walls off the cut,
+ * spheres larger than a subdomain and subdomains thinner than a radius.  The boxes of centres
+ * are known to all: O(ranks) numbers.
  *
- * The paper's classes are counted by the way, with its half-buffer boxes: internal (the sphere lies
- * within the subdomain shrunk by half the buffer), interfacial (its centre is ours but it reaches the
- * buffer), external (a copy).
+ * The paper's classes are counted by the way, with its half-buffer boxes: internal (the sphere
+ * lies within the subdomain shrunk by half the buffer), interfacial (its centre is ours but it
+ * reaches the buffer), external (a copy).
  */
 #ifndef TREMIE_DOMAIN_HALO_H
 #define TREMIE_DOMAIN_HALO_H
@@ -47,8 +48,8 @@ struct halo {
 void halo_init(struct halo *halo, const struct comm *comm);
 void halo_clear(struct halo *halo);
 
-/* Makes all ghosts anew from the owned spheres' places and allowances; owned spheres stay where they
- * are in memory.  half_buffer [m] is for the paper's classes.  Collective. */
+/* Makes all ghosts anew from the owned spheres' places and allowances; owned spheres stay where
+ * they are in memory.  half_buffer [m] is for the paper's classes.  Collective. */
 void halo_build(struct halo *halo, const struct comm *comm, const struct boxes *boxes,
                 struct spheres *spheres, const struct materials *materials, double half_buffer);
 

@@ -1,5 +1,5 @@
-/* From a sphere's id to its storage index on this rank: an open-addressing hash table, made anew when
- * spheres have moved in memory. */
+/* From a sphere's id to its storage index on this rank: an open-addressing hash table, made
+ * anew when spheres have moved in memory. */
 #ifndef TREMIE_DOMAIN_LOOKUP_H
 #define TREMIE_DOMAIN_LOOKUP_H
 

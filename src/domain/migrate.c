@@ -65,8 +65,9 @@ static void reserve_keys(struct migrate *migrate, int n)
 }
 
 /* Finds everybody's new owner; returns how many leave this rank. */
-static int decide_owners(struct migrate *migrate, const struct comm *comm, const struct boxes *boxes,
-                         const struct spheres *spheres, const unsigned char *removed)
+static int decide_owners(struct migrate *migrate, const struct comm *comm,
+                         const struct boxes *boxes, const struct spheres *spheres,
+                         const unsigned char *removed)
 {
     int n_leaving = 0;
     for (int i = 0; i < spheres->n_owned; i++) {
@@ -77,7 +78,8 @@ static int decide_owners(struct migrate *migrate, const struct comm *comm, const
     return n_leaving;
 }
 
-static void pack_item(struct comm_mail *mail, int rank, enum item item, const void *bytes, size_t n)
+static void pack_item(struct comm_mail *mail, int rank, enum item item, const void *bytes,
+                      size_t n)
 {
     const unsigned char kind = (unsigned char)item;
     comm_mail_pack(mail, rank, &kind, 1);
@@ -85,7 +87,8 @@ static void pack_item(struct comm_mail *mail, int rank, enum item item, const vo
         comm_mail_pack(mail, rank, bytes, n);
 }
 
-static void pack_spheres(struct migrate *migrate, const struct spheres *spheres, const unsigned char *removed)
+static void pack_spheres(struct migrate *migrate, const struct spheres *spheres,
+                         const unsigned char *removed)
 {
     for (int i = 0; i < spheres->n_owned; i++) {
         if (!migrate->leaves[i] || (removed != NULL && removed[i]))
@@ -93,12 +96,14 @@ static void pack_spheres(struct migrate *migrate, const struct spheres *spheres,
         pack_item(&migrate->mail, migrate->owner[i], ITEM_SPHERE, NULL, 0);
         for (int f = 0; f < SPHERE_N_FIELDS; f++) {
             const struct field_view view = sphere_view(spheres, f);
-            comm_mail_pack(&migrate->mail, migrate->owner[i], field_at(&view, i), field_size(&sphere_fields[f]));
+            comm_mail_pack(&migrate->mail, migrate->owner[i], field_at(&view, i),
+                           field_size(&sphere_fields[f]));
         }
     }
 }
 
-/* A record goes wherever one of its spheres goes; -1 where the sphere is not ours or leaves the run. */
+/* A record goes wherever one of its spheres goes; -1 where the sphere is not ours or leaves the
+ * run. */
 static int destination(const struct migrate *migrate, const struct spheres *spheres, int64_t id,
                        const unsigned char *removed)
 {
@@ -108,7 +113,8 @@ static int destination(const struct migrate *migrate, const struct spheres *sphe
     return migrate->owner[i];
 }
 
-static void pack_records(struct migrate *migrate, const struct spheres *spheres, const unsigned char *removed)
+static void pack_records(struct migrate *migrate, const struct spheres *spheres,
+                         const unsigned char *removed)
 {
     lookup_fill(&migrate->lookup, spheres->n_owned, spheres->id);
     for (int r = 0; r < migrate->n_contacts; r++) {
@@ -138,16 +144,20 @@ static int unpack(struct migrate *migrate, struct spheres *spheres, int n)
             unsigned char item;
             comm_mail_unpack(mail, q, &item, 1);
             if (item == ITEM_CONTACT) {
-                ARRAY_GROW(migrate->contacts, migrate->n_contacts + 1, migrate->contact_capacity);
-                comm_mail_unpack(mail, q, &migrate->contacts[migrate->n_contacts++], sizeof *migrate->contacts);
+                ARRAY_GROW(migrate->contacts, migrate->n_contacts + 1,
+                           migrate->contact_capacity);
+                comm_mail_unpack(mail, q, &migrate->contacts[migrate->n_contacts++],
+                                 sizeof *migrate->contacts);
             } else if (item == ITEM_FACET) {
                 ARRAY_GROW(migrate->facets, migrate->n_facets + 1, migrate->facet_capacity);
-                comm_mail_unpack(mail, q, &migrate->facets[migrate->n_facets++], sizeof *migrate->facets);
+                comm_mail_unpack(mail, q, &migrate->facets[migrate->n_facets++],
+                                 sizeof *migrate->facets);
             } else {
                 spheres_reserve(spheres, n + 1);
                 for (int f = 0; f < SPHERE_N_FIELDS; f++) {
                     const struct field_view view = sphere_view(spheres, f);
-                    comm_mail_unpack(mail, q, field_at(&view, n), field_size(&sphere_fields[f]));
+                    comm_mail_unpack(mail, q, field_at(&view, n),
+                                     field_size(&sphere_fields[f]));
                 }
                 n++;
             }
@@ -163,7 +173,8 @@ static void permute(struct migrate *migrate, struct spheres *spheres, int n)
         const struct field_view view = sphere_view(spheres, f);
         const size_t size = field_size(&sphere_fields[f]);
         for (int k = 0; k < n; k++)
-            memcpy(migrate->field_scratch + (size_t)k * size, field_at(&view, migrate->keys[k].index), size);
+            memcpy(migrate->field_scratch + (size_t)k * size,
+                   field_at(&view, migrate->keys[k].index), size);
         for (int k = 0; k < n; k++)
             memcpy(field_at(&view, k), migrate->field_scratch + (size_t)k * size, size);
     }
@@ -188,10 +199,11 @@ static void sort_owned(struct migrate *migrate, struct spheres *spheres, int n_w
     spheres->n_owned = n;
 }
 
-void migrate_spheres(struct migrate *migrate, const struct comm *comm, const struct boxes *boxes,
-                     struct spheres *spheres, const struct contact_set *contacts,
-                     const struct facet_contacts *facets, const struct materials *materials,
-                     const unsigned char *removed, bool renew_order)
+void migrate_spheres(struct migrate *migrate, const struct comm *comm,
+                     const struct boxes *boxes, struct spheres *spheres,
+                     const struct contact_set *contacts, const struct facet_contacts *facets,
+                     const struct materials *materials, const unsigned char *removed,
+                     bool renew_order)
 {
     reserve(migrate, spheres->n_all);
     migrate->n_before = spheres->n_all;
@@ -200,9 +212,10 @@ void migrate_spheres(struct migrate *migrate, const struct comm *comm, const str
     migrate->n_left = n_leaving;
     if (contacts != NULL) {
         migrate->n_contacts =
-            n_leaving == 0 ? 0
-                           : contact_set_records(contacts, spheres, migrate->leaves, &migrate->contacts,
-                                                 &migrate->contact_capacity);
+            n_leaving == 0
+                ? 0
+                : contact_set_records(contacts, spheres, migrate->leaves, &migrate->contacts,
+                                      &migrate->contact_capacity);
         free(migrate->facets);
         migrate->facets = NULL;
         migrate->n_facets = facet_contacts_records(facets, spheres, &migrate->facets);

@@ -1,10 +1,11 @@
 /*
- * Migration: spheres that crossed into another subdomain move to its rank with all their fields and the
- * history of every contact in which they take part; what stays is put back into canonical order.
+ * Migration: spheres that crossed into another subdomain move to its rank with all their fields
+ * and the history of every contact in which they take part; what stays is put back into
+ * canonical order.
  *
- * Both owners of a contact know its history, so a record travels with each sphere that moves.  Spheres
- * that left the run (`removed`) go nowhere.  Afterwards moved_to_now() tells, for each storage index of
- * before, where that sphere is now; lists carry their history by it.
+ * Both owners of a contact know its history, so a record travels with each sphere that moves.
+ * Spheres that left the run (`removed`) go nowhere.  Afterwards moved_to_now() tells, for each
+ * storage index of before, where that sphere is now; lists carry their history by it.
  */
 #ifndef TREMIE_DOMAIN_MIGRATE_H
 #define TREMIE_DOMAIN_MIGRATE_H
@@ -25,19 +26,20 @@ struct spheres;
 struct migrate {
     struct comm_mail mail;
     struct lookup lookup;
-    /* Records on their way: filled by the caller (restart) or by migrate_spheres: pair contacts of
-     * spheres that leave, all facet contacts (storage indices may change).  Afterwards what arrived. */
+    /* Records on their way: filled by the caller (restart) or by migrate_spheres: pair contacts
+     * of spheres that leave, all facet contacts (storage indices may change).  Afterwards what
+     * arrived. */
     int n_contacts, contact_capacity, n_facets, facet_capacity;
     struct contact_record *contacts;
     struct facet_contact_record *facets;
     /* Before the move */
     int n_before, before_capacity;
     int64_t *id_before; /* ids by storage index */
-    int *moved;         /* storage index now; -1: not here.  Known for all after migrate_find_moved() */
-    int *owner;         /* rank of each owned sphere's new owner */
+    int *moved; /* storage index now; -1: not here.  Known for all after migrate_find_moved() */
+    int *owner; /* rank of each owned sphere's new owner */
     unsigned char *leaves;
-    bool owned_moved;   /* storage indices of owned spheres changed on this rank */
-    int64_t n_left;     /* spheres that left this rank in the last migration */
+    bool owned_moved; /* storage indices of owned spheres changed on this rank */
+    int64_t n_left;   /* spheres that left this rank in the last migration */
     /* scratch */
     int key_capacity;
     struct order_key *keys, *key_scratch;
@@ -48,16 +50,18 @@ void migrate_init(struct migrate *migrate, const struct comm *comm);
 void migrate_clear(struct migrate *migrate);
 
 /*
- * Moves every owned sphere to the owner of its place.  removed: owned spheres that leave the run, or
- * NULL.  renew_order: cells have been renewed, so all are sorted anew.  contacts may be NULL (restart: the
- * records are the caller's).  Ghosts are gone afterwards.  Collective.
+ * Moves every owned sphere to the owner of its place.  removed: owned spheres that leave the
+ * run, or NULL.  renew_order: cells have been renewed, so all are sorted anew.  contacts may be
+ * NULL (restart: the records are the caller's).  Ghosts are gone afterwards.  Collective.
  */
-void migrate_spheres(struct migrate *migrate, const struct comm *comm, const struct boxes *boxes,
-                     struct spheres *spheres, const struct contact_set *contacts,
-                     const struct facet_contacts *facets, const struct materials *materials,
-                     const unsigned char *removed, bool renew_order);
+void migrate_spheres(struct migrate *migrate, const struct comm *comm,
+                     const struct boxes *boxes, struct spheres *spheres,
+                     const struct contact_set *contacts, const struct facet_contacts *facets,
+                     const struct materials *materials, const unsigned char *removed,
+                     bool renew_order);
 
-/* Completes moved[] once the new ghosts are here; the lookup then finds all spheres here.  Local. */
+/* Completes moved[] once the new ghosts are here; the lookup then finds all spheres here.
+ * Local. */
 void migrate_find_moved(struct migrate *migrate, const struct spheres *spheres);
 
 #endif

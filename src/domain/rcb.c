@@ -16,7 +16,7 @@ struct group {
     int first_rank, n_ranks;
     int *link; /* where its code goes in the tree */
     int axis;
-    double low, high; /* the cut lies between */
+    double low, high;     /* the cut lies between */
     int64_t total, below; /* weight of the group; weight under `low` */
 };
 
@@ -28,7 +28,8 @@ struct work {
     int64_t *histogram; /* BINS a group */
 };
 
-static void measure_extents(struct work *work, const struct comm *comm, const struct spheres *spheres)
+static void measure_extents(struct work *work, const struct comm *comm,
+                            const struct spheres *spheres)
 {
     for (int k = 0; k < 6 * work->n_groups; k++)
         work->extent[k] = 1e300;
@@ -59,8 +60,8 @@ static void measure_extents(struct work *work, const struct comm *comm, const st
 }
 
 /* Weight by bin between low and high of each group, summed over ranks. */
-static void fill_histograms(struct work *work, const struct comm *comm, const struct spheres *spheres,
-                            const int64_t *weights)
+static void fill_histograms(struct work *work, const struct comm *comm,
+                            const struct spheres *spheres, const int64_t *weights)
 {
     memset(work->histogram, 0, (size_t)work->n_groups * BINS * sizeof *work->histogram);
     for (int i = 0; i < spheres->n_owned; i++) {
@@ -119,17 +120,19 @@ static void divide(struct work *work, struct boxes *boxes, const struct spheres 
         node->child[1] = code_of(group->first_rank + n_lower, n_upper, boxes);
         lower_of[g] = n_lower > 1 ? n_next : -1;
         if (n_lower > 1)
-            next[n_next++] = (struct group){group->first_rank, n_lower, &node->child[0], 0, 0.0, 0.0, 0, 0};
+            next[n_next++] =
+                (struct group){group->first_rank, n_lower, &node->child[0], 0, 0.0, 0.0, 0, 0};
         upper_of[g] = n_upper > 1 ? n_next : -1;
         if (n_upper > 1)
-            next[n_next++] =
-                (struct group){group->first_rank + n_lower, n_upper, &node->child[1], 0, 0.0, 0.0, 0, 0};
+            next[n_next++] = (struct group){
+                group->first_rank + n_lower, n_upper, &node->child[1], 0, 0.0, 0.0, 0, 0};
     }
     for (int i = 0; i < spheres->n_owned; i++) {
         const int g = work->group_of[i];
         if (g < 0)
             continue;
-        const bool lower = sphere_position(spheres, i)[work->groups[g].axis] < work->groups[g].high;
+        const bool lower =
+            sphere_position(spheres, i)[work->groups[g].axis] < work->groups[g].high;
         work->group_of[i] = lower ? lower_of[g] : upper_of[g];
     }
     free(lower_of);

@@ -7,8 +7,8 @@
 struct job;
 
 /*
- * The constants of Hertz-Mindlin contact for one pair of materials (equations in src/THEORY.md).
- * With contact radius a = sqrt(R* overlap):
+ * The constants of Hertz-Mindlin contact for one pair of materials (equations in
+ * src/THEORY.md). With contact radius a = sqrt(R* overlap):
  *   normal force      f_n = normal a overlap - c_n v_n,   normal = 4/3 E*           [Pa]
  *   tangential        k_t = tangential a,                 tangential = 8 G*         [Pa]
  *   normal dashpot    c_n = damping sqrt(a m*),           damping = 2 sqrt(5/6) beta sqrt(2 E*)

@@ -51,7 +51,8 @@ static int run_end(const struct order_key *keys, int begin, int n)
     return end;
 }
 
-static void merge(const struct order_key *a, int n_a, const struct order_key *b, int n_b, struct order_key *out)
+static void merge(const struct order_key *a, int n_a, const struct order_key *b, int n_b,
+                  struct order_key *out)
 {
     int i = 0, j = 0, k = 0;
     while (i < n_a && j < n_b)

@@ -1,7 +1,7 @@
 /*
- * See packing.h.  A CSV file begins with a header that names its columns: x_m, y_m, z_m and, where
- * given, radius_m, material, vx_m_s, vy_m_s, vz_m_s; what it leaves out the group says.  The file is
- * held in memory while the scene is built.
+ * See packing.h.  A CSV file begins with a header that names its columns: x_m, y_m, z_m and,
+ * where given, radius_m, material, vx_m_s, vy_m_s, vz_m_s; what it leaves out the group says.
+ * The file is held in memory while the scene is built.
  */
 #include "model/packing.h"
 
@@ -13,7 +13,16 @@
 #include "base/array.h"
 #include "job/job.h"
 
-enum column { COLUMN_X, COLUMN_Y, COLUMN_Z, COLUMN_RADIUS, COLUMN_MATERIAL, COLUMN_VX, COLUMN_VY, COLUMN_VZ };
+enum column {
+    COLUMN_X,
+    COLUMN_Y,
+    COLUMN_Z,
+    COLUMN_RADIUS,
+    COLUMN_MATERIAL,
+    COLUMN_VX,
+    COLUMN_VY,
+    COLUMN_VZ
+};
 enum { N_COLUMNS = 8, CELLS_MAX = 32, LINE_MAX_SIZE = 4096 };
 
 static const char *const COLUMN_NAMES[N_COLUMNS] = {"x_m",      "y_m",    "z_m",    "radius_m",
@@ -63,7 +72,8 @@ static bool read_header(struct reader *reader, char *line)
         }
     }
     if ((seen & 7) != 7)
-        return complain(reader, 0, "the header names no places; columns x_m,y_m,z_m are expected");
+        return complain(reader, 0,
+                        "the header names no places; columns x_m,y_m,z_m are expected");
     return true;
 }
 
@@ -78,22 +88,27 @@ static bool read_number(struct reader *reader, int cell, const char *text, doubl
     return true;
 }
 
-static bool read_row(struct reader *reader, const struct job *job, char *line, struct packing_sphere *sphere)
+static bool read_row(struct reader *reader, const struct job *job, char *line,
+                     struct packing_sphere *sphere)
 {
     char *cells[CELLS_MAX];
     if (split(line, cells) != reader->n_cells)
-        return complain(reader, 0, "this row has another number of cells than the header; as many are expected");
-    double *const targets[N_COLUMNS] = {&sphere->position.x, &sphere->position.y, &sphere->position.z,
-                                        &sphere->radius,     NULL,                &sphere->velocity.x,
-                                        &sphere->velocity.y, &sphere->velocity.z};
+        return complain(
+            reader, 0,
+            "this row has another number of cells than the header; as many are expected");
+    double *const targets[N_COLUMNS] = {
+        &sphere->position.x, &sphere->position.y, &sphere->position.z, &sphere->radius, NULL,
+        &sphere->velocity.x, &sphere->velocity.y, &sphere->velocity.z};
     for (int c = 0; c < reader->n_cells; c++) {
         const int column = reader->column[c];
         if (column == COLUMN_MATERIAL) {
             sphere->material = -1;
             for (int m = 0; m < job->n_materials; m++)
-                sphere->material = strcmp(job->materials[m].name, cells[c]) == 0 ? m : sphere->material;
+                sphere->material =
+                    strcmp(job->materials[m].name, cells[c]) == 0 ? m : sphere->material;
             if (sphere->material < 0)
-                return complain(reader, c, "unknown material; one of the job's materials is expected");
+                return complain(reader, c,
+                                "unknown material; one of the job's materials is expected");
         } else if (column >= 0 && !read_number(reader, c, cells[c], targets[column])) {
             return false;
         }
@@ -103,7 +118,8 @@ static bool read_row(struct reader *reader, const struct job *job, char *line, s
     return true;
 }
 
-static bool read_rows(struct packing *packing, const struct job *job, FILE *file, struct reader *reader)
+static bool read_rows(struct packing *packing, const struct job *job, FILE *file,
+                      struct reader *reader)
 {
     const struct job_spheres *group = packing->group;
     int64_t capacity = 0;
@@ -128,7 +144,9 @@ static bool read_rows(struct packing *packing, const struct job *job, FILE *file
         packing->n++;
     }
     if (packing->n == 0)
-        return complain(reader, 0, "there are no spheres in it; a header and at least one row are expected");
+        return complain(
+            reader, 0,
+            "there are no spheres in it; a header and at least one row are expected");
     return true;
 }
 
@@ -143,8 +161,8 @@ bool packing_open(struct packing *packing, const struct job *job, int group, cha
     struct reader reader = {.path = packing->group->file, .why = why};
     FILE *file = fopen(reader.path, "r");
     if (file == NULL) {
-        *why = array_format("%s: cannot be read (%s); a CSV file of spheres is expected", reader.path,
-                            strerror(errno));
+        *why = array_format("%s: cannot be read (%s); a CSV file of spheres is expected",
+                            reader.path, strerror(errno));
         return false;
     }
     const bool fine = read_rows(packing, job, file, &reader);

@@ -1,5 +1,6 @@
 /*
- * Where a group's spheres are at the start: the k-th place of a lattice, or the k-th row of a CSV file.
+ * Where a group's spheres are at the start: the k-th place of a lattice, or the k-th row of a
+ * CSV file.
  */
 #ifndef TREMIE_MODEL_PACKING_H
 #define TREMIE_MODEL_PACKING_H

@@ -1,6 +1,6 @@
 /*
- * See sphere.h.  Every array has room for the dummies behind its capacity, so that kernels may load any
- * of them for a padded entry.
+ * See sphere.h.  Every array has room for the dummies behind its capacity, so that kernels may
+ * load any of them for a padded entry.
  */
 #include "model/sphere.h"
 

@@ -5,9 +5,10 @@
  *   motion {x y z R | vx vy vz R}    position at step n, velocity at n - 1/2
  *   spin   {R wx R wy R wz 1/R | wx wy wz 1/m}   angular velocity at n - 1/2
  *   force  {fx fy fz friction | tx ty tz damping}
- * (R stands twice so that the difference of two motion rows holds R_j - R_i; the products in `spin` are
- * derived.)  The spare force lanes gather half of the energy that each contact dissipates in this step by
- * friction and by damping [J].  Two dummies follow the last sphere, far away, as partners of padding.
+ * (R stands twice so that the difference of two motion rows holds R_j - R_i; the products in
+ * `spin` are derived.)  The spare force lanes gather half of the energy that each contact
+ * dissipates in this step by friction and by damping [J].  Two dummies follow the last sphere,
+ * far away, as partners of padding.
  *
  * Canonical order is ascending (order_cell, id): see model/order.h.
  */
@@ -47,18 +48,18 @@ struct spheres {
     int n_owned, n_all; /* owned; owned and ghosts */
     int capacity;
     struct sphere_row *motion, *spin, *force; /* n_all + SPHERE_DUMMIES used */
-    int64_t *id;         /* global, never reused */
+    int64_t *id;                              /* global, never reused */
     int64_t *order_cell; /* cell of the order grid at birth or at the last renewal */
     int32_t *material;
     int32_t *group;
-    int64_t *sides; /* bit s: on the forward side of section s */
+    int64_t *sides;                /* bit s: on the forward side of section s */
     double *dissipated_friction;   /* [J] since birth */
     double *dissipated_damping;    /* [J] */
     double *dissipated_tangential; /* [J] lost by the tangential law on unloading */
     /* Not state: bookkeeping of searches. */
-    double *allowance;                /* how far this sphere may go before a search is due [m] */
-    double (*inverse_allowance)[2];   /* 1/allowance of the candidates and of the inner list [1/m] */
-    double (*searched_at)[3];         /* position at the last search [m] */
+    double *allowance;              /* how far this sphere may go before a search is due [m] */
+    double (*inverse_allowance)[2]; /* of candidates and of the inner list [1/m] */
+    double (*searched_at)[3];       /* position at the last search [m] */
 };
 
 extern const struct field sphere_fields[SPHERE_N_FIELDS];
@@ -69,7 +70,8 @@ void spheres_clear(struct spheres *spheres);
 void spheres_reserve(struct spheres *spheres, int n);
 /* Where a field of the table lies. */
 struct field_view sphere_view(const struct spheres *spheres, int field);
-/* Fills what is derived from the fields of sphere i: row products, 1/m from density and radius. */
+/* Fills what is derived from the fields of sphere i: row products, 1/m from density and
+ * radius. */
 void sphere_complete(struct spheres *spheres, int i, const struct materials *materials);
 /* Writes the dummies behind the last sphere. */
 void spheres_pad(struct spheres *spheres);

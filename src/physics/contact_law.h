@@ -135,8 +135,8 @@ LANES_INLINE void contact_law_grip(struct contact_law_work *work,
         work->v_v = contact_law_dot(work->v_t, work->v_t);
     }
 
-    /* Spring and dashpot exert no more than friction can hold.  Where no lane slides nothing would
-     * change, so skipping it changes no bit. */
+    /* Spring and dashpot exert no more than friction can hold.  Where no lane slides nothing
+     * would change, so skipping it changes no bit. */
     const lanes g_squared = contact_law_dot(g, g);
     work->sliding = g_squared > limit * limit;
     work->share = one;
@@ -174,8 +174,8 @@ LANES_INLINE void contact_law_ledger(const struct contact_law_work *work,
     /* The spring that slides: the mean of its force before and after, times how far. */
     const lanes slid =
         0.5 * softness * inverse_a * (h1_h2 + work->share * h2_h2) * (one - work->share);
-    /* The dashpot.  Velocity comes from the half step to the step by what this contact's own force
-     * does to it: 7/4 dt / m* f. */
+    /* The dashpot.  Velocity comes from the half step to the step by what this contact's own
+     * force does to it: 7/4 dt / m* f. */
     const lanes half = 1.75 * meeting->inverse_mass * dt;
     const lanes g_v = work->share * (h2_v + work->c_t * work->v_v);
     const lanes dashed = work->share * work->c_t * (work->v_v - half * g_v) * dt;
@@ -193,9 +193,9 @@ LANES_INLINE void contact_law_ledger(const struct contact_law_work *work,
 }
 
 /*
- * The law.  `history` has CONTACT_LAW_HISTORY lanes and is brought to the present.  Where surfaces
- * do not touch, forces are zero and the history becomes +0.0; with the ledger on, what a contact
- * that has just ended still held is counted as lost, so call once more after the end.
+ * The law.  `history` has CONTACT_LAW_HISTORY lanes and is brought to the present.  Where
+ * surfaces do not touch, forces are zero and the history becomes +0.0; with the ledger on, what
+ * a contact that has just ended still held is counted as lost, so call once more after the end.
  */
 LANES_INLINE void contact_law(const struct contact_law_meeting *meeting,
                               const struct contact_law_constants *pair, lanes dt, bool ledger,

@@ -14,7 +14,8 @@ double critical_step_rayleigh(double radius, double density, double young, doubl
 
 double critical_step_hertz_duration(double mass, double radius, double young, double speed)
 {
-    return 2.87 * elementary_exp(0.2 * elementary_log(mass * mass / (radius * young * young * speed)));
+    return 2.87 *
+           elementary_exp(0.2 * elementary_log(mass * mass / (radius * young * young * speed)));
 }
 
 double critical_step_round_down(double x)

@@ -1,6 +1,7 @@
 /*
- * Central differences with half-step velocities (leapfrog), for spheres with rotation (THEORY.md,
- * "Integration"): v(n+1/2) from v(n-1/2) and the force at n, then x(n+1) from v(n+1/2).
+ * Central differences with half-step velocities (leapfrog), for spheres with rotation
+ * (THEORY.md, "Integration"): v(n+1/2) from v(n-1/2) and the force at n, then x(n+1) from
+ * v(n+1/2).
  */
 #ifndef TREMIE_PHYSICS_INTEGRATE_H
 #define TREMIE_PHYSICS_INTEGRATE_H
@@ -16,7 +17,7 @@ struct integrate_work {
     double (*inverse_allowance)[2];                   /* [1/m] */
     double dt;                                        /* [s] */
     double gravity[3];                                /* [m/s2] */
-    double damping; /* mass-proportional [1/s]; 0: none */
+    double damping;                                   /* mass-proportional [1/s]; 0: none */
     bool ledger;
     /* out */
     double spent[2]; /* largest share of each allowance that this step's motion used [-] */

@@ -1,21 +1,24 @@
 /*
- * Checkpoints: one HDF5 file with all that the next step needs, written collectively, the same bytes
- * whatever the number of ranks, readable on any number of ranks.
+ * Checkpoints: one HDF5 file with all that the next step needs, written collectively, the same
+ * bytes whatever the number of ranks, readable on any number of ranks.
  *
  * Layout (all rows sorted by id, units and descriptions as attributes `unit`, `description`):
- *   /run             attributes: format, format_version, step, time [s], dt [s], next_id, n_spheres,
- *                    n_contacts, n_facet_contacts, n_monitors, title; job: the job text as used
+ *   /run             attributes: format, format_version, step, time [s], dt [s], next_id,
+ *                    n_spheres, n_contacts, n_facet_contacts, n_monitors, title; job: the job
+ *                    text as used
  *   /spheres/NAME    one data set per saved field of sphere_fields[] (n or n x width)
- *   /contacts/       first_id, second_id, tangential_force (n x 3), contact_radius, normal_velocity;
- *                    touching contacts, first_id < second_id, sorted by (first_id, second_id)
- *   /facet_contacts/ id, body, feature, tangential_force, contact_radius, normal_velocity; sorted
+ *   /contacts/       first_id, second_id, tangential_force (n x 3), contact_radius,
+ *                    normal_velocity; touching contacts, first_id < second_id, sorted by
+ *                    (first_id, second_id)
+ *   /facet_contacts/ id, body, feature, tangential_force, contact_radius, normal_velocity;
+ *                    sorted
  *   /monitors/       names (one a line), sums (n x 5 int64: struct exact_sum as totals)
- *   /checksums/      under the same paths: CRC-32 (as zlib's) of each block of 256 rows; job, names and
- *                    sums have theirs as attribute `checksum`
+ *   /checksums/      under the same paths: CRC-32 (as zlib's) of each block of 256 rows; job,
+ *                    names and sums have theirs as attribute `checksum`
  * Nothing in it depends on rank count, machine or clock (those are in the log and the series).
  *
- * Writing: space is reserved and agreed on, the file is written under a temporary name, forced to the
- * disk, renamed, its folder forced to the disk.  Reading verifies every checksum.
+ * Writing: space is reserved and agreed on, the file is written under a temporary name, forced
+ * to the disk, renamed, its folder forced to the disk.  Reading verifies every checksum.
  */
 #ifndef TREMIE_STORE_CHECKPOINT_H
 #define TREMIE_STORE_CHECKPOINT_H
@@ -53,29 +56,30 @@ struct checkpoint {
 };
 
 /*
- * Writes the state to `path`.  Each touching contact must be held by exactly one rank (that of the
- * owner of the lower id); facet contacts by the owner of the sphere.  Returns REPORT_FINISHED, or
- * REPORT_STORAGE with the reason said, the same on all ranks; then no file of that name was touched.
- * Collective.
+ * Writes the state to `path`.  Each touching contact must be held by exactly one rank (that of
+ * the owner of the lower id); facet contacts by the owner of the sphere.  Returns
+ * REPORT_FINISHED, or REPORT_STORAGE with the reason said, the same on all ranks; then no file
+ * of that name was touched.  Collective.
  */
 int checkpoint_write(const struct comm *comm, const char *path,
                      const struct checkpoint *checkpoint);
 
 /*
- * Reads `path` into a cleared `checkpoint`, whose `spheres` points to an initialised struct spheres;
- * each rank gets a slice of the ids as its owned spheres (fields only: sphere_complete is the
- * caller's), all contact records in which one of them takes part (sorted), and all facet contact records of them.
- * Materials, bodies and features are not compared with the job: the caller knows it.  Monitor totals are given to rank 0, zeros to the others.  Returns REPORT_FINISHED, or REPORT_STORAGE
- * with the reason said (missing, truncated, checksum, newer format), the same on all ranks.
- * Collective.
+ * Reads `path` into a cleared `checkpoint`, whose `spheres` points to an initialised struct
+ * spheres; each rank gets a slice of the ids as its owned spheres (fields only: sphere_complete
+ * is the caller's), all contact records in which one of them takes part (sorted), and all facet
+ * contact records of them.  Materials, bodies and features are not compared with the job: the
+ * caller knows it.  Monitor totals are given to rank 0, zeros to the others.  Returns
+ * REPORT_FINISHED, or REPORT_STORAGE with the reason said (missing, truncated, checksum, newer
+ * format), the same on all ranks.  Collective.
  */
 int checkpoint_read(const struct comm *comm, const char *path, struct checkpoint *checkpoint);
 
 /* Frees what checkpoint_read allocated, except the spheres. */
 void checkpoint_clear(struct checkpoint *checkpoint);
 
-/* Only step, dt, next_id, title and job_text, on one process, without MPI (tools, resume).  Returns
- * false with the reason in `why` (caller frees). */
+/* Only step, dt, next_id, title and job_text, on one process, without MPI (tools, resume).
+ * Returns false with the reason in `why` (caller frees). */
 bool checkpoint_read_header(const char *path, struct checkpoint *checkpoint, char **why);
 
 #endif

@@ -1,5 +1,6 @@
-/* See crc32.h.  Table k holds the remainder of a byte followed by k zero bytes; the eight remainders of
- * eight bytes are independent, which is what makes it some times faster than byte by byte. */
+/* See crc32.h.  Table k holds the remainder of a byte followed by k zero bytes; the eight
+ * remainders of eight bytes are independent, which is what makes it some times faster than byte
+ * by byte. */
 #include "store/crc32.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
-/* CRC-32 as zlib, PNG and Ethernet have it (polynomial 0xEDB88320), so that any tool can check our
- * files: Python's zlib.crc32 gives the same numbers. */
+/* CRC-32 as zlib, PNG and Ethernet have it (polynomial 0xEDB88320), so that any tool can check
+ * our files: Python's zlib.crc32 gives the same numbers. */
 #ifndef TREMIE_STORE_CRC32_H
 #define TREMIE_STORE_CRC32_H
 

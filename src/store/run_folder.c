@@ -1,13 +1,14 @@
 /*
  * See run_folder.h.
  *
- * The lock is the kernel's (flock), so it ends with its process, however that ends; what is written in
- * the file only tells people who holds it.  Where the file system has no locks, the process named there
- * is looked for, which can tell only about this host.  A process that is just being killed holds its
- * lock for a moment more, so a taken lock is tried again for half a second.
+ * The lock is the kernel's (flock), so it ends with its process, however that ends; what is
+ * written in the file only tells people who holds it.  Where the file system has no locks, the
+ * process named there is looked for, which can tell only about this host.  A process that is
+ * just being killed holds its lock for a moment more, so a taken lock is tried again for half a
+ * second.
  *
- * A folder is looked through before anything in it is touched: one with other things than a run's in it
- * is somebody's folder, not ours.
+ * A folder is looked through before anything in it is touched: one with other things than a
+ * run's in it is somebody's folder, not ours.
  */
 #include "store/run_folder.h"
 
@@ -29,8 +30,8 @@
 #include "job/job.h"
 #include "store/file.h"
 
-/* What a run keeps in its folder and what moves aside when it starts over; beside these the lock, older
- * set_aside_N and hidden files may be there. */
+/* What a run keeps in its folder and what moves aside when it starts over; beside these the
+ * lock, older set_aside_N and hidden files may be there. */
 static const char *const RESULTS[] = {"job.yaml",  "checkpoints", "series",
                                       "snapshots", "log",         "status"};
 enum { N_RESULTS = sizeof RESULTS / sizeof *RESULTS };
@@ -61,7 +62,7 @@ static bool is_ours(const char *name)
            strncmp(name, SET_ASIDE, sizeof SET_ASIDE - 1) == 0;
 }
 
-/* ------------------------------------------------------------------------------------ a first look */
+/* ----------------------------------------------------------------------------- a first look */
 
 struct look {
     bool exists, has_job, has_results;
@@ -91,7 +92,7 @@ static int look_at(const char *path, struct look *look)
     return REPORT_FINISHED;
 }
 
-/* --------------------------------------------------------------------------------------------- lock */
+/* ------------------------------------------------------------------------------------- lock */
 
 /* Is the process that the lock's text names alive on this host? */
 static bool holder_lives(const char *text)
@@ -166,7 +167,7 @@ static int take_lock(struct run_folder *folder)
     return status;
 }
 
-/* -------------------------------------------------------------------------------------- setting aside */
+/* ---------------------------------------------------------------------------- setting aside */
 
 /* A new folder RUN/set_aside_N; NULL, with the reason said, when there can be none. */
 static char *new_aside(const struct run_folder *folder)
@@ -211,7 +212,8 @@ static int set_results_aside(const struct run_folder *folder)
     return status;
 }
 
-/* Moves the files of RUN/name later than `step` to ASIDE/name; *aside is made when it is needed. */
+/* Moves the files of RUN/name later than `step` to ASIDE/name; *aside is made when it is
+ * needed. */
 static int set_later_aside(const struct run_folder *folder, const char *name, int64_t step,
                            char **aside, int *n_moved)
 {
@@ -252,7 +254,7 @@ int run_folder_rewind(const struct run_folder *folder, int64_t step)
     return status;
 }
 
-/* ----------------------------------------------------------------------------------- open and close */
+/* --------------------------------------------------------------------------- open and close */
 
 static int make_folders(const char *path)
 {
@@ -393,7 +395,7 @@ void run_folder_close(struct run_folder *folder)
     *folder = (struct run_folder){.lock = -1};
 }
 
-/* ---------------------------------------------------------------------------------------- its files */
+/* -------------------------------------------------------------------------------- its files */
 
 static char *step_path(const struct run_folder *folder, const char *name, int64_t step)
 {

@@ -1,8 +1,8 @@
 /*
- * The folder a run owns: RUN/job.yaml, checkpoints/, series/, snapshots/, log, status, lock, and what
- * was moved out of the way, set_aside_N/.  Nothing is written anywhere else, and a folder with other
- * things in it is not touched.  All functions act on one process (rank 0) and return a REPORT_ status with the reason
- * said; the caller broadcasts it.
+ * The folder a run owns: RUN/job.yaml, checkpoints/, series/, snapshots/, log, status, lock,
+ * and what was moved out of the way, set_aside_N/.  Nothing is written anywhere else, and a
+ * folder with other things in it is not touched.  All functions act on one process (rank 0) and
+ * return a REPORT_ status with the reason said; the caller broadcasts it.
  */
 #ifndef TREMIE_STORE_RUN_FOLDER_H
 #define TREMIE_STORE_RUN_FOLDER_H
@@ -20,21 +20,24 @@ struct run_folder {
  * - New or empty folder: created with its subfolders, job.yaml written.
  * - Folder of the same job (job_difference finds nothing): job.yaml rewritten, *resumes true.
  * - `fresh`: what is there is moved into RUN/set_aside_N/ (said), then as new.
- * - Another job's folder, a folder with other things in it, a read-only place, a live lock: refused
- *   (REPORT_BAD_INPUT or REPORT_STORAGE) with the difference and the remedy, nothing changed.
+ * - Another job's folder, a folder with other things in it, a read-only place, a live lock:
+ *   refused (REPORT_BAD_INPUT or REPORT_STORAGE) with the difference and the remedy, nothing
+ *   changed.
  */
 int run_folder_open(struct run_folder *folder, const char *path, const char *job_text,
                     bool fresh, bool *resumes);
 void run_folder_close(struct run_folder *folder);
 
-/* RUN/checkpoints/step_000000050000.h5 and RUN/series/step_000000050000.h5; the caller frees. */
+/* RUN/checkpoints/step_000000050000.h5 and RUN/series/step_000000050000.h5; the caller
+ * frees. */
 char *run_folder_checkpoint_path(const struct run_folder *folder, int64_t step);
 char *run_folder_series_path(const struct run_folder *folder, int64_t step);
 /* Steps of the checkpoints there are, newest first; caller frees *steps. */
 int run_folder_checkpoints(const struct run_folder *folder, int64_t **steps);
 /* Keeps the newest `keep` checkpoints; series segments stay. */
 void run_folder_prune(const struct run_folder *folder, int keep);
-/* On resume from `step`: later checkpoints and segments are moved into RUN/set_aside_N/ (said). */
+/* On resume from `step`: later checkpoints and segments are moved into RUN/set_aside_N/
+ * (said). */
 int run_folder_rewind(const struct run_folder *folder, int64_t step);
 /* Replaces RUN/status with this text (temporary name, rename). */
 void run_folder_status(const struct run_folder *folder, const char *text);

@@ -1,12 +1,13 @@
 /*
  * Tables over time: what a run reports.
  *
- * Rows are kept in memory on rank 0 and written as one segment file with each checkpoint, so that rows
- * and checkpoint always agree; a running job's readers never meet a file that is open.  A segment is
- * RUN/series/step_000000050000.h5, named after its checkpoint, and holds the rows since the one before
- * in HDF5 groups, one a table, each with one 1-D double dataset a column (attributes: unit,
- * description).  Tables: "series" (bits do not depend on ranks or clock: samples of energies, bodies,
- * sections), "runtime" (timings; never compared).  Tools read the chain of segments in order.
+ * Rows are kept in memory on rank 0 and written as one segment file with each checkpoint, so
+ * that rows and checkpoint always agree; a running job's readers never meet a file that is
+ * open.  A segment is RUN/series/step_000000050000.h5, named after its checkpoint, and holds
+ * the rows since the one before in HDF5 groups, one a table, each with one 1-D double dataset a
+ * column (attributes: unit, description).  Tables: "series" (bits do not depend on ranks or
+ * clock: samples of energies, bodies, sections), "runtime" (timings; never compared).  Tools
+ * read the chain of segments in order.
  */
 #ifndef TREMIE_STORE_SERIES_H
 #define TREMIE_STORE_SERIES_H
@@ -36,15 +37,16 @@ void series_clear_rows(struct series *series);
 /* Column index by name, -1 when there is none. */
 int series_column_index(const struct series *series, const char *name);
 
-/* Writes the rows of these tables as one segment (temporary name, fsync, rename).  On one process.
- * `title` is kept as an attribute of /run.  Returns a REPORT_ status, the reason said. */
+/* Writes the rows of these tables as one segment (temporary name, fsync, rename).  On one
+ * process.  `title` is kept as an attribute of /run.  Returns a REPORT_ status, the reason
+ * said. */
 int series_write_segment(const char *path, const char *title, int n_tables,
                          const struct series *const *tables);
 
-/* Reads one table of a run: the chain of segments of RUN/series in order.  A segment that cannot be
- * read is left out with a warning; a column that some segments lack is not-a-number there.  Returns
- * false with the reason in `why` (caller frees) when nothing can be read; then there is nothing to
- * clear. */
+/* Reads one table of a run: the chain of segments of RUN/series in order.  A segment that
+ * cannot be read is left out with a warning; a column that some segments lack is not-a-number
+ * there.  Returns false with the reason in `why` (caller frees) when nothing can be read; then
+ * there is nothing to clear. */
 bool series_read(struct series *series, const char *run_folder, const char *table, char **why);
 
 #endif

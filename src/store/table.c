@@ -1,7 +1,8 @@
 /*
- * See table.h.  Sorting takes two exchanges: first by equal ranges of ids, which a rank can work out
- * alone, sorted there; then, the number of rows before being known, to the slices.  If ids are spread
- * unevenly the first exchange is uneven too, which costs memory for a moment and nothing else.
+ * See table.h.  Sorting takes two exchanges: first by equal ranges of ids, which a rank can
+ * work out alone, sorted there; then, the number of rows before being known, to the slices.  If
+ * ids are spread unevenly the first exchange is uneven too, which costs memory for a moment and
+ * nothing else.
  */
 #include "store/table.h"
 
@@ -53,7 +54,7 @@ static unsigned char *record(const struct table *table, int64_t i)
     return table->records + (size_t)i * table->record_size;
 }
 
-/* -------------------------------------------------------------------------------------- exchange */
+/* --------------------------------------------------------------------------------- exchange */
 
 /* Replaces the records by those that the other ranks packed for this one, in rank order. */
 static void receive(struct table *table, struct comm_mail *mail, const struct comm *comm)
@@ -119,7 +120,7 @@ void table_arrange(struct table *table, const struct comm *comm, int64_t n_ids)
     table->begin = slice_begin(table->n_total, comm->rank, comm->n_ranks);
 }
 
-/* ------------------------------------------------------------------------------------------ files */
+/* ------------------------------------------------------------------------------------ files */
 
 static char *column_path(const struct table *table, int k)
 {
@@ -251,10 +252,10 @@ void table_read(struct table *table, struct h5 *h5, const struct comm *comm, int
     }
 }
 
-/* ---------------------------------------------------------------------------------------- follow */
+/* ----------------------------------------------------------------------------------- follow */
 
-/* The first id of every rank's slice; a slice without records begins where the next one does.  *why says
- * when slices overlap. */
+/* The first id of every rank's slice; a slice without records begins where the next one does.
+ * *why says when slices overlap. */
 static int64_t *first_ids(const struct table *table, const struct comm *comm, char **why)
 {
     const int n_ranks = comm->n_ranks;

@@ -1,11 +1,13 @@
 /*
- * Records spread over ranks, in a file: sorted by key, cut into contiguous slices, one rank a slice, each
- * member of the record a data set of its own ("column") in a group named after the table.
+ * Records spread over ranks, in a file: sorted by key, cut into contiguous slices, one rank a
+ * slice, each member of the record a data set of its own ("column") in a group named after the
+ * table.
  *
- * Beside each column stand CRC-32 checksums of its blocks of TABLE_BLOCK rows, in /checksums under the
- * same path.  Slices are whole blocks, so every block is written, summed and verified by one rank, and
- * neither blocks nor bytes depend on the number of ranks.  A drawback: below TABLE_BLOCK rows a rank
- * some ranks have nothing to do.  All that one rank sends another must fit 2 GiB.
+ * Beside each column stand CRC-32 checksums of its blocks of TABLE_BLOCK rows, in /checksums
+ * under the same path.  Slices are whole blocks, so every block is written, summed and verified
+ * by one rank, and neither blocks nor bytes depend on the number of ranks.  A drawback: below
+ * TABLE_BLOCK rows a rank some ranks have nothing to do.  All that one rank sends another must
+ * fit 2 GiB.
  */
 #ifndef TREMIE_STORE_TABLE_H
 #define TREMIE_STORE_TABLE_H
@@ -42,8 +44,8 @@ void table_init(struct table *table, const char *name, size_t record_size,
 void table_clear(struct table *table);
 void table_add_column(struct table *table, const struct field *field, size_t offset);
 
-/* Sorts the n records that each rank holds into slices; ids lie in 0 .. n_ids - 1, keys are unique.
- * Collective. */
+/* Sorts the n records that each rank holds into slices; ids lie in 0 .. n_ids - 1, keys are
+ * unique. Collective. */
 void table_arrange(struct table *table, const struct comm *comm, int64_t n_ids);
 
 /* Bytes that the table takes in a file.  Local. */
@@ -55,13 +57,13 @@ void table_write(const struct table *table, struct h5 *h5);
 
 /* Finds n_total, with all columns and checksums compared in type and length.  Local. */
 void table_measure(struct table *table, struct h5 *h5);
-/* Given n_total, reads this rank's slice, verifying checksums, that ids lie in 0 .. n_ids - 1 and that
- * keys ascend.  Local. */
+/* Given n_total, reads this rank's slice, verifying checksums, that ids lie in 0 .. n_ids - 1
+ * and that keys ascend.  Local. */
 void table_read(struct table *table, struct h5 *h5, const struct comm *comm, int64_t n_ids);
 
-/* After table_read of both: sends each record to the ranks in whose slice of `owners` its ids lie; the first
- * n_ids int64 of a record are ids.  Returns NULL, or what is wrong (an id that no slice has), which the
- * caller frees.  Collective. */
+/* After table_read of both: sends each record to the ranks in whose slice of `owners` its ids
+ * lie; the first n_ids int64 of a record are ids.  Returns NULL, or what is wrong (an id that
+ * no slice has), which the caller frees.  Collective. */
 char *table_follow(struct table *table, const struct comm *comm, const struct table *owners,
                    int n_ids);
 

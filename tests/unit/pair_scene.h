@@ -1,6 +1,6 @@
 /*
- * Random pairs of spheres for tests of the pair kernel: touching and not, at first touch and long
- * since, sticking and sliding, of several materials and sizes.
+ * Random pairs of spheres for tests of the pair kernel: touching and not, at first touch and
+ * long since, sticking and sliding, of several materials and sizes.
  */
 #ifndef TREMIE_TESTS_PAIR_SCENE_H
 #define TREMIE_TESTS_PAIR_SCENE_H

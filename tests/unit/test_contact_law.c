@@ -1,6 +1,7 @@
 /*
- * The contact law, one contact at a time: impacts of two spheres, or of a sphere on a fixed wall,
- * against theory and published values, and the energy ledger against the energy that is missing.
+ * The contact law, one contact at a time: impacts of two spheres, or of a sphere on a fixed
+ * wall, against theory and published values, and the energy ledger against the energy that is
+ * missing.
  */
 #include "check.h"
 
@@ -20,7 +21,8 @@ static const struct matter glass = {48e9, 0.20, 2800.0}, limestone = {20e9, 0.25
 static const struct matter alumina = {380e9, 0.23, 4000.0}, iron = {100e9, 0.25, 7000.0};
 static const struct matter aluminium = {70e9, 0.30, 2699.0}, magnesium = {40e9, 0.35, 1800.0};
 
-/* Two spheres of one matter, the first at rest; or (wall) the second alone, on a rigid plane. */
+/* Two spheres of one matter, the first at rest; or (wall) the second alone, on a rigid
+ * plane. */
 struct impact {
     struct matter matter;
     bool wall;
@@ -104,7 +106,8 @@ static struct contact_law_meeting meeting_of(const struct impact *impact,
     return meeting;
 }
 
-/* Flies the spheres into each other and apart again, as the program would: velocities at half steps. */
+/* Flies the spheres into each other and apart again, as the program would: velocities at half
+ * steps. */
 static struct outcome fly(const struct impact *impact)
 {
     const double r = impact->radius, mass = impact->matter.density * 4.0 / 3.0 * PI * r * r * r;
@@ -168,7 +171,8 @@ static struct outcome fly(const struct impact *impact)
     return out;
 }
 
-/* Chung and Ooi 2011, cases 1 and 2: elastic, head-on; values to all digits from Hertz's theory. */
+/* Chung and Ooi 2011, cases 1 and 2: elastic, head-on; values to all digits from Hertz's
+ * theory. */
 TEST(elastic_impacts_follow_hertz)
 {
     const struct {
@@ -220,8 +224,8 @@ TEST(damping_is_second_order)
     EXPECT(error[1] < error[0] / 8.0);
 }
 
-/* Case 4 where the contact slides throughout, exact: tangential restitution and spin; and the rows
- * of the published table below that, within 3 per cent. */
+/* Case 4 where the contact slides throughout, exact: tangential restitution and spin; and the
+ * rows of the published table below that, within 3 per cent. */
 TEST(oblique_impacts)
 {
     const double e = 0.98, mu = 0.092, r = 2.5e-3, speed = 3.9;
@@ -243,7 +247,8 @@ TEST(oblique_impacts)
     }
 }
 
-/* Case 6: a spinning sphere dropped on a wall; sliding throughout, tangential restitution x - 1. */
+/* Case 6: a spinning sphere dropped on a wall; sliding throughout, tangential restitution x -
+ * 1. */
 TEST(spin_into_a_wall)
 {
     const struct matter matter = {70e9, 0.33, 2700.0};
@@ -257,8 +262,8 @@ TEST(spin_into_a_wall)
     }
 }
 
-/* No impact gains energy beyond the phase error of the normal impact: 1e-3 at 20 steps a contact
- * (public codes have shown up to 34 per cent). */
+/* No impact gains energy beyond the phase error of the normal impact: 1e-3 at 20 steps a
+ * contact (public codes have shown up to 34 per cent). */
 TEST(grazing_impacts_never_gain)
 {
     const double mu[] = {0.3, 0.5, 1.0, 10.0};
@@ -274,8 +279,9 @@ TEST(grazing_impacts_never_gain)
                 }
 }
 
-/* What is missing after an impact is what the ledger says was lost, and the rest falls as dt^2: at
- * least twelvefold for a fourfold number of steps, averaged over the phase of first contact. */
+/* What is missing after an impact is what the ledger says was lost, and the rest falls as dt^2:
+ * at least twelvefold for a fourfold number of steps, averaged over the phase of first
+ * contact. */
 static double ledger_error(struct impact impact, double steps, double *lost)
 {
     double error = 0.0;
@@ -311,8 +317,8 @@ TEST(ledger_closes)
     }
 }
 
-/* During the impact too, kinetic and elastic energy and what is lost add up; what is lost in a step
- * is known to half a step. */
+/* During the impact too, kinetic and elastic energy and what is lost add up; what is lost in a
+ * step is known to half a step. */
 TEST(elastic_energy_is_what_motion_lacks)
 {
     for (double mu = 0.0; mu < 11.0; mu += 0.5)

@@ -1,6 +1,6 @@
 /*
- * The pair kernel: every instruction set that runs here gives the bits of a plain loop over single
- * contacts, and leaves exact zeros where nothing touches.
+ * The pair kernel: every instruction set that runs here gives the bits of a plain loop over
+ * single contacts, and leaves exact zeros where nothing touches.
  */
 #include "check.h"
 

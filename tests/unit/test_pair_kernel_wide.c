@@ -1,6 +1,6 @@
 /*
- * The pair kernel of eight lanes, compiled here for the processor that the tests are built for: so its
- * blocks and shuffles are tested where there are no vectors of eight.
+ * The pair kernel of eight lanes, compiled here for the processor that the tests are built for:
+ * so its blocks and shuffles are tested where there are no vectors of eight.
  */
 #define pair_kernel_blocks_v4 wide_blocks /* beside the library's own */
 #define PAIR_KERNEL_ISA       4

@@ -1,4 +1,5 @@
-/* Damping for a restitution that was asked for, against published values and the closed form. */
+/* Damping for a restitution that was asked for, against published values and the closed
+ * form. */
 #include "check.h"
 
 #include <math.h>

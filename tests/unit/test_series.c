@@ -1,4 +1,5 @@
-/* Series: what is written comes back, segment after segment, and damage costs no more than its rows. */
+/* Series: what is written comes back, segment after segment, and damage costs no more than its
+ * rows. */
 #include "store/series.h"
 
 #include <math.h>
