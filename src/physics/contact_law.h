@@ -12,7 +12,7 @@
  *
  * The normal points from the first to the second.  Relative velocity is the second's minus the
  * first's, so surfaces approach where v_n < 0.  The memory of a contact is
- *   0..2  tangential force that the second exerts on the first [N]
+ *   0..2  force of the tangential spring, that the second exerts on the first [N]
  *   3     contact radius of the last step [m]; > 0 exactly when they touched
  *   4     normal relative velocity of the last step [m/s]
  * and belongs to the contact: it is +0.0 throughout where surfaces do not touch.
@@ -121,7 +121,7 @@ LANES_INLINE void contact_law_grip(struct contact_law_work *work,
     work->inverse_old = one / radius_old;
     work->scale = lanes_where(work->radius < radius_old, work->radius * work->inverse_old, one);
     work->taken = contact_law_dot(history, n);
-    work->stretch = pair->tangential * work->radius * dt;
+    work->stretch = pair->tangential * work->radius * dt; /* (1.9) */
 #pragma GCC unroll 3
     for (int x = 0; x < 3; x++) {
         work->turned[x] = history[x] - work->taken * n[x];                   /* (1.10) */
