@@ -70,3 +70,14 @@ struct camera camera_fit(double azimuth, double elevation, double zoom,
     camera.focal *= zoom;
     return camera;
 }
+
+struct vec3 camera_middle(int n, const struct camera_ball *balls)
+{
+    struct vec3 least = balls[0].centre, most = balls[0].centre;
+    for (int i = 1; i < n; i++) {
+        const struct vec3 c = balls[i].centre;
+        least = (struct vec3){fmin(least.x, c.x), fmin(least.y, c.y), fmin(least.z, c.z)};
+        most = (struct vec3){fmax(most.x, c.x), fmax(most.y, c.y), fmax(most.z, c.z)};
+    }
+    return vec3_scale(0.5, vec3_add(least, most));
+}

@@ -35,6 +35,9 @@ struct camera_ball {
 struct camera camera_fit(double azimuth, double elevation, double zoom,
                          struct camera_frame frame, int n, const struct camera_ball *balls);
 
+/* The middle of the box around all balls. */
+struct vec3 camera_middle(int n, const struct camera_ball *balls);
+
 /* Camera coordinates of a point, and of a direction. */
 struct vec3 camera_point(const struct camera *camera, struct vec3 point);
 struct vec3 camera_direction(const struct camera *camera, struct vec3 direction);

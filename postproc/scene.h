@@ -1,0 +1,33 @@
+/* A checkpoint on one process, with the job it came from and the bodies where they were. */
+#ifndef TREMIE_POSTPROC_SCENE_H
+#define TREMIE_POSTPROC_SCENE_H
+
+#include <stdbool.h>
+
+#include "job/job.h"
+#include "model/body.h"
+#include "model/sphere.h"
+#include "store/checkpoint.h"
+
+struct comm;
+
+struct scene {
+    struct checkpoint checkpoint; /* its spheres are those below */
+    struct spheres spheres;       /* fields only */
+    bool has_job;                 /* else the two below are empty */
+    struct job job;
+    struct bodies bodies;
+};
+
+/*
+ * Reads a checkpoint, or the newest one of a run's folder, verifying its checksums.  Returns a REPORT_
+ * status, the reason said; then there is nothing to clear.  A job text that this version cannot
+ * read is a warning.  Collective, meant for one rank.
+ */
+int scene_read(struct scene *scene, const struct comm *comm, const char *path);
+void scene_clear(struct scene *scene);
+
+/* The newest checkpoint of a run's folder; NULL when there is none.  The caller frees it. */
+char *scene_newest(const char *run_folder);
+
+#endif
