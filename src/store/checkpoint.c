@@ -1,13 +1,13 @@
 /*
  * See checkpoint.h.
  *
- * Writing has three parts.  One rank lays the whole file out with ordinary file calls: space is reserved
- * before and after, so that a full disk, a quota or a file-size limit shows itself where it is an error
- * of one process, not in the midst of a collective call, where MPI's files may hang.  Then all ranks fill
- * in their slices through parallel HDF5; nothing but row data moves in this part, each rank's as one
- * contiguous run, so there is nothing for collective buffering to gather and a rank whose disk fails
- * keeps nobody waiting.  Last the file is forced to the disk and renamed.  Because one rank alone decides
- * the layout, bytes cannot depend on the number of ranks.
+ * Writing has three parts.  One rank lays the whole file out and gives it its space on the disk, so that a
+ * full disk, a quota or a file-size limit shows itself where it is an error of one process, not in the
+ * midst of a collective call, where MPI's files may hang.  Then all ranks fill in their slices through
+ * parallel HDF5; each rank writes its own contiguous run of each data set, so there is nothing for
+ * collective buffering to gather, and a rank whose disk fails keeps nobody waiting.  Last the file is
+ * forced to the disk and renamed.  Because one rank alone decides the layout, bytes cannot depend on the
+ * number of ranks.
  *
  * Metadata carry HDF5's own checksums, rows those of store/table.h, the rest an attribute `checksum`.
  * A drawback: the reserved space must be there beside the older checkpoints.
@@ -280,31 +280,61 @@ static char *lay_out(const char *path, const struct checkpoint *checkpoint,
                      const struct table tables[N_TABLES])
 {
     unlink(path);
-    /* HDF5 will give this space back when it creates the file; but it has been there. */
+    /* HDF5 gives this space back when it creates the file; but it has been there. */
     char *why = file_reserve(path, file_size(checkpoint, tables));
     if (why != NULL)
         return why;
     struct h5 h5;
-    h5_create(&h5, path);
+    h5_create_to_fill(&h5, path);
     put_run(&h5, checkpoint, tables);
     put_monitors(&h5, checkpoint->n_monitors, totals);
     h5_group(&h5, "/checksums");
     for (int k = 0; k < N_TABLES; k++)
         table_declare(&tables[k], &h5);
-    h5_close(&h5);
-    return h5.why != NULL ? h5.why : file_reserve_all(path);
+    h5_save(&h5, path);
+    return h5.why;
+}
+
+static void say_why(const char *path, const char *why)
+{
+    report_error(
+        "cannot write the checkpoint %s: %s; earlier ones are untouched: free some space or "
+        "mend the disk, then run the same command again",
+        path, why);
+}
+
+/* Ends the program.  Parallel HDF5 can neither close nor forget a file when a part of it failed on some
+ * rank; that disk has failed after it had promised the space. */
+static _Noreturn void abandon(const struct comm *comm, const char *path, const char *temporary,
+                              const char *why)
+{
+    if (comm->rank == 0) {
+        unlink(temporary);
+        say_why(path, why);
+    } else {
+        sleep(1); /* rank 0 speaks first, if it can */
+    }
+    fflush(NULL);
+    MPI_Abort(comm->mpi, REPORT_STORAGE);
+    _exit(REPORT_STORAGE);
 }
 
 /* Every rank's rows, forced to the disk.  Returns NULL or this rank's reason.  Collective. */
-static char *fill_in(const struct comm *comm, const char *path,
+static char *fill_in(const struct comm *comm, const char *path, const char *temporary,
                      const struct table tables[N_TABLES])
 {
     struct h5 h5;
-    h5_open_shared(&h5, path, comm);
+    h5_open_shared(&h5, temporary, comm);
+    if (comm_agree(comm, h5.file >= 0) == 0)
+        return h5.why;
     for (int k = 0; k < N_TABLES; k++)
         table_write(&tables[k], &h5);
+    if (!all_well(comm, &h5.why))
+        abandon(comm, path, temporary, h5.why);
     h5_close(&h5);
-    return h5.why != NULL ? h5.why : file_sync(path);
+    if (h5.why != NULL)
+        abandon(comm, path, temporary, h5.why);
+    return file_sync(temporary);
 }
 
 static char *write_file(const struct comm *comm, const char *path,
@@ -317,7 +347,7 @@ static char *write_file(const struct comm *comm, const char *path,
         why = lay_out(temporary, checkpoint, totals, tables);
     bool well = all_well(comm, &why);
     if (well) {
-        why = fill_in(comm, temporary, tables);
+        why = fill_in(comm, path, temporary, tables);
         well = all_well(comm, &why);
     }
     if (well) {
@@ -344,10 +374,7 @@ int checkpoint_write(const struct comm *comm, const char *path,
     }
     char *why = write_file(comm, path, checkpoint, totals, tables);
     if (why != NULL)
-        report_error(
-            "cannot write the checkpoint %s: %s; earlier ones are untouched: free some space "
-            "or mend the disk, then run the same command again",
-            path, why);
+        say_why(path, why);
     const int status = why != NULL ? REPORT_STORAGE : REPORT_FINISHED;
     tables_clear(tables);
     free(totals);

@@ -46,24 +46,72 @@ void file_remove_temporaries(const char *folder)
     closedir(entries);
 }
 
+/* Disk space for n bytes; 0 or the error. */
+static int reserve(int descriptor, int64_t n)
+{
+    const int error = n > 0 ? posix_fallocate(descriptor, 0, n) : 0;
+    /* A file system that cannot promise space will tell when it is written. */
+    return error == EOPNOTSUPP || error == EINVAL || error == ENOSYS ? 0 : error;
+}
+
 char *file_reserve(const char *path, int64_t n)
 {
     file_survive_size_limit();
     const int descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
     if (descriptor < 0)
         return reason(errno);
-    int error = n > 0 ? posix_fallocate(descriptor, 0, n) : 0;
-    if (error == EOPNOTSUPP || error == EINVAL || error == ENOSYS)
-        error = 0; /* this file system cannot promise; writing will tell */
+    int error = reserve(descriptor, n);
     if (close(descriptor) != 0 && error == 0)
         error = errno;
     return error != 0 ? reason(error) : NULL;
 }
 
-char *file_reserve_all(const char *path)
+/* Copies bytes begin .. end - 1; 0 or the error. */
+static int copy_bytes(int to, int from, off_t begin, off_t end)
 {
+    char buffer[65536];
+    while (begin < end) {
+        const off_t left = end - begin;
+        const size_t wanted = left < (off_t)sizeof buffer ? (size_t)left : sizeof buffer;
+        const ssize_t n = pread(from, buffer, wanted, begin);
+        if (n <= 0)
+            return n < 0 ? errno : EIO;
+        const ssize_t written = pwrite(to, buffer, (size_t)n, begin);
+        if (written <= 0)
+            return written < 0 ? errno : ENOSPC;
+        begin += written;
+    }
+    return 0;
+}
+
+static int copy_data(int to, int from, off_t size)
+{
+    int error = 0;
+    for (off_t end = 0; error == 0;) {
+        const off_t begin = lseek(from, end, SEEK_DATA);
+        if (begin < 0)
+            return errno == ENXIO ? 0 : errno; /* ENXIO: nothing but a hole is left */
+        end = lseek(from, begin, SEEK_HOLE);
+        error = copy_bytes(to, from, begin, end < size ? end : size);
+    }
+    return error;
+}
+
+char *file_fill(const char *path, int source)
+{
+    file_survive_size_limit();
     struct stat state;
-    return stat(path, &state) != 0 ? reason(errno) : file_reserve(path, state.st_size);
+    const int descriptor = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor < 0)
+        return reason(errno);
+    int error = fstat(source, &state) != 0 ? errno : reserve(descriptor, state.st_size);
+    if (error == 0)
+        error = copy_data(descriptor, source, state.st_size);
+    if (error == 0 && (ftruncate(descriptor, state.st_size) != 0 || fsync(descriptor) != 0))
+        error = errno;
+    if (close(descriptor) != 0 && error == 0)
+        error = errno;
+    return error != 0 ? reason(error) : NULL;
 }
 
 char *file_sync(const char *path)

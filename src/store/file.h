@@ -21,8 +21,8 @@ void file_remove_temporaries(const char *folder);
 
 /* Creates `path`, or keeps it, with disk space for n bytes. */
 char *file_reserve(const char *path, int64_t n);
-/* The same for an existing file as long as it says it is. */
-char *file_reserve_all(const char *path);
+/* Makes `path` a copy of an open file, forced to the disk, with disk space for its holes too. */
+char *file_fill(const char *path, int source);
 /* Forces a file's content to the disk. */
 char *file_sync(const char *path);
 /* Gives a file that was written and synced its final name, and forces the folder to the disk. */

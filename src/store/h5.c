@@ -1,15 +1,27 @@
-/* See h5.h. */
+/*
+ * See h5.h.
+ *
+ * HDF5 does not survive a disk that fails it: after a failed close the process crashes when it ends, and
+ * ranks that close a file together wait for one that failed.  So a new file is laid out in memory (an
+ * anonymous file of which only the pages in use exist, so it may be as long as it likes, is put in place
+ * of the one that HDF5 opened) and copied to the disk by plain calls, whose failures harm nobody; and
+ * what ranks fill in together has nothing to write on closing.  A drawback: this needs Linux.
+ */
 #include "store/h5.h"
 
+#include <errno.h>
 #include <hdf5.h>
 #include <mpi.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include "base/array.h"
 #include "base/comm.h"
+#include "store/file.h"
 
 enum { TRANSFER_MAX = 1 << 29, CHUNK_ROWS = 8192, NAME_MAX_LENGTH = 512 };
 
@@ -65,36 +77,61 @@ static void fail_at(struct h5 *h5, const char *object)
 
 static void prepare(struct h5 *h5)
 {
-    *h5 = (struct h5){.file = -1};
+    *h5 = (struct h5){.file = -1, .memory = -1};
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
-/* One version of the format, whose metadata carry checksums; no locks, for nobody reads what is being
+/* Versions of the format whose metadata carry checksums; no locks, for nobody reads what is being
  * written, and some file systems have none. */
-static hid_t access_properties(void)
+static hid_t access_properties(H5F_libver_t version)
 {
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
+    H5Pset_libver_bounds(access, version, version);
     H5Pset_file_locking(access, false, true);
     return access;
 }
 
-void h5_create(struct h5 *h5, const char *path)
+/* From now on what HDF5 writes to its file goes to memory. */
+static void keep_in_memory(struct h5 *h5)
+{
+    void *handle = NULL;
+    h5->memory = memfd_create("tremie", MFD_CLOEXEC);
+    if (H5Fget_vfd_handle(h5->file, H5P_DEFAULT, &handle) < 0 || handle == NULL)
+        fail_at(h5, "");
+    else if (h5->memory < 0 || dup2(h5->memory, *(const int *)handle) < 0)
+        h5_fail(h5, "%s", strerror(errno));
+}
+
+static void create(struct h5 *h5, const char *path, H5F_libver_t version)
 {
     prepare(h5);
-    const hid_t access = access_properties(), creation = H5Pcreate(H5P_FILE_CREATE);
+    const hid_t access = access_properties(version), creation = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_obj_track_times(creation, false);
     h5->file = H5Fcreate(path, H5F_ACC_TRUNC, creation, access);
     if (h5->file < 0)
         fail_at(h5, ""); /* before another call, which would forget the reason */
+    else
+        keep_in_memory(h5);
     H5Pclose(creation);
     H5Pclose(access);
+}
+
+/* The newer version's chunk indices carry checksums. */
+void h5_create(struct h5 *h5, const char *path)
+{
+    create(h5, path, H5F_LIBVER_V110);
+}
+
+/* The newer version's superblock is written whenever a file that was open for writing is closed. */
+void h5_create_to_fill(struct h5 *h5, const char *path)
+{
+    create(h5, path, H5F_LIBVER_V18);
 }
 
 void h5_open(struct h5 *h5, const char *path)
 {
     prepare(h5);
-    const hid_t access = access_properties();
+    const hid_t access = access_properties(H5F_LIBVER_V110);
     h5->file = H5Fopen(path, H5F_ACC_RDONLY, access);
     if (h5->file < 0)
         fail_at(h5, "");
@@ -104,7 +141,10 @@ void h5_open(struct h5 *h5, const char *path)
 void h5_open_shared(struct h5 *h5, const char *path, const struct comm *comm)
 {
     prepare(h5);
-    const hid_t access = access_properties();
+    /* Open MPI's own way with files leaves locks and semaphores about, and hangs where disks fail; it
+     * has a better one, chosen when the first file is opened. */
+    setenv("OMPI_MCA_io", "^ompio", false);
+    const hid_t access = access_properties(H5F_LIBVER_V110);
     H5Pset_fapl_mpio(access, comm->mpi, MPI_INFO_NULL);
     h5->file = H5Fopen(path, H5F_ACC_RDWR, access);
     if (h5->file < 0)
@@ -117,6 +157,22 @@ void h5_close(struct h5 *h5)
     if (h5->file >= 0 && H5Fclose(h5->file) < 0)
         fail_at(h5, "");
     h5->file = -1;
+    if (h5->memory >= 0)
+        close(h5->memory);
+    h5->memory = -1;
+}
+
+void h5_save(struct h5 *h5, const char *path)
+{
+    const int memory = h5->memory;
+    h5->memory = -1;
+    h5_close(h5);
+    char *why = h5->why == NULL ? file_fill(path, memory) : NULL;
+    if (why != NULL)
+        h5_fail(h5, "%s", why);
+    free(why);
+    if (memory >= 0)
+        close(memory);
 }
 
 void h5_group(struct h5 *h5, const char *path)

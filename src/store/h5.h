@@ -6,8 +6,8 @@
  * by their path in the file.  Bytes depend on nothing but what is written: no times, one format version,
  * little-endian.  Reading never trusts the file: type and shape are compared with what is expected.
  *
- * Row data lie contiguous and unfiltered, in space that exists once h5_declare_rows() and h5_close() have
- * returned; writing rows changes no metadata.  So one process may lay the file out and many fill it in.
+ * Row data lie contiguous and unfiltered, in space that exists once h5_save() has returned; writing rows
+ * changes nothing else.  So one process may lay the file out and many fill it in.
  */
 #ifndef TREMIE_STORE_H5_H
 #define TREMIE_STORE_H5_H
@@ -22,14 +22,20 @@ struct comm;
 
 struct h5 {
     int64_t file; /* HDF5's handle, negative when closed */
-    char *why;    /* the first failure, NULL while all is well */
+    int memory;   /* descriptor of a new file's memory, negative when there is none */
+    char *why;    /* the first failure, NULL while all is well; its user frees it */
 };
 
-/* A new file, written by one process.  Local. */
+/* A new, empty file at `path`; what is put into it stays in memory until h5_save().  Local. */
 void h5_create(struct h5 *h5, const char *path);
+/* The same for one whose rows are written later, by all ranks after h5_open_shared().  Local. */
+void h5_create_to_fill(struct h5 *h5, const char *path);
+/* Closes a new file and puts it on the disk, space for rows not yet written included.  Local. */
+void h5_save(struct h5 *h5, const char *path);
 /* For reading, by one process.  Local. */
 void h5_open(struct h5 *h5, const char *path);
-/* For all ranks to write rows that were declared.  Collective. */
+/* For all ranks to write rows that were declared.  When that fails on some rank, no rank may close the
+ * file, nor end in MPI_Finalize: they would wait for each other.  Collective. */
 void h5_open_shared(struct h5 *h5, const char *path, const struct comm *comm);
 /* Closes the file, if it is open.  Collective after h5_open_shared, else local. */
 void h5_close(struct h5 *h5);

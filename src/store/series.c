@@ -152,6 +152,7 @@ static char *write_file(const char *path, const char *title, int n_tables,
                         const struct series *const *tables)
 {
     unlink(path);
+    /* HDF5 gives this space back when it creates the file; but it has been there. */
     char *why = file_reserve(path, file_size(n_tables, tables));
     if (why != NULL)
         return why;
@@ -163,8 +164,8 @@ static char *write_file(const char *path, const char *title, int n_tables,
     h5_put_text(&h5, "/run", "title", title);
     for (int k = 0; k < n_tables; k++)
         put_table(&h5, tables[k]);
-    h5_close(&h5);
-    return h5.why != NULL ? h5.why : file_sync(path);
+    h5_save(&h5, path);
+    return h5.why;
 }
 
 int series_write_segment(const char *path, const char *title, int n_tables,
