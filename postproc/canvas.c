@@ -186,7 +186,7 @@ static void shine(struct vec3 normal, double open, double *matt, double *gloss)
     const double towards = vec3_dot(normal, lamp);
     const double sky = 0.5 + 0.5 * normal.y;
     const double facing = vec3_dot(normal, half);
-    *matt = (0.30 + 0.22 * sky) * (0.25 + 0.75 * open) +
+    *matt = (0.36 + 0.24 * sky) * (0.25 + 0.75 * open) +
             (towards > 0.0 ? 0.60 * towards * (0.55 + 0.45 * open) : 0.0);
     *gloss = facing > 0.0 ? 0.16 * open * pow(facing, 40.0) : 0.0;
 }

@@ -96,7 +96,12 @@ static int compare_paths(const void *a, const void *b)
 char *content_open(struct content *content, const char *path)
 {
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    *content = (struct content){.file = H5Fopen(path, H5F_ACC_RDONLY, H5P_DEFAULT)};
+    /* Our files are whole once they have their name, so readers need no lock, which some file systems
+     * do not have. */
+    const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
+    H5Pset_file_locking(access, false, true);
+    *content = (struct content){.file = H5Fopen(path, H5F_ACC_RDONLY, access)};
+    H5Pclose(access);
     if (content->file < 0)
         return array_format("%s is not a whole HDF5 file", path);
     if (H5Ovisit(content->file, H5_INDEX_NAME, H5_ITER_INC, visit_object, content) < 0) {

@@ -74,6 +74,18 @@ static int column_width(const struct sheet *sheet, int column)
     return width;
 }
 
+/* Does the column hold words?  Numbers, and what stands for a missing one, do not count. */
+static bool column_is_text(const struct sheet *sheet, int column)
+{
+    for (int i = column; i < sheet->n_cells; i += sheet->n_columns) {
+        const char *cell = sheet->cells[i];
+        if (strspn(cell, "0123456789.+-") == 0 && cell[0] != '\0' && strcmp(cell, "nan") != 0 &&
+            strcmp(cell, "inf") != 0)
+            return true;
+    }
+    return column == 0;
+}
+
 static void print_padded(FILE *stream, const char *text, int width, bool left, bool last)
 {
     const int blanks = width - text_width(text);
@@ -88,13 +100,17 @@ void sheet_print(const struct sheet *sheet, FILE *stream)
 {
     const int n = sheet->n_columns;
     int *widths = array_allocate((size_t)n, sizeof *widths);
-    for (int c = 0; c < n; c++)
+    bool *left = array_allocate((size_t)n, sizeof *left);
+    for (int c = 0; c < n; c++) {
         widths[c] = column_width(sheet, c);
+        left[c] = column_is_text(sheet, c);
+    }
     for (int c = 0; c < n; c++)
-        print_padded(stream, sheet->headings[c], widths[c], c == 0, c == n - 1);
+        print_padded(stream, sheet->headings[c], widths[c], left[c], c == n - 1);
     for (int i = 0; i < sheet->n_cells; i++)
-        print_padded(stream, sheet->cells[i], widths[i % n], i % n == 0, i % n == n - 1);
+        print_padded(stream, sheet->cells[i], widths[i % n], left[i % n], i % n == n - 1);
     free(widths);
+    free(left);
 }
 
 static void write_csv_cell(FILE *stream, const char *text, bool last)

@@ -21,7 +21,7 @@ void sheet_heading(struct sheet *sheet, const char *format, ...)
 void sheet_cell(struct sheet *sheet, const char *format, ...)
     __attribute__((format(printf, 2, 3)));
 
-/* First column to the left, the others to the right, two blanks between. */
+/* Words and the first column to the left, numbers to the right, two blanks between. */
 void sheet_print(const struct sheet *sheet, FILE *stream);
 /* Writes the sheet to `path`.  Returns a REPORT_ status, the reason said. */
 int sheet_write_csv(const struct sheet *sheet, const char *path);
