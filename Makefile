@@ -138,8 +138,10 @@ $$(BIN)/$(subst _,-,$(1)): $$(BUILD)/postproc/$(1).o $$(tool_shared) $$(flavour_
 endef
 $(foreach source,$(tool_sources),$(eval $(call tool_rule,$(basename $(notdir $(source))))))
 
+# Tests of what tools share.
+$(filter $(BUILD)/tests/test_postproc%,$(unit_tests)): $(tool_shared)
 $(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(flavour_objects) $(library)
 	@mkdir -p $(@D)
-	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(library) $(LDLIBS)
 
 -include $(all_objects:.o=.d)

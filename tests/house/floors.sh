@@ -35,12 +35,13 @@ while :; do
     spoken=$more
 done
 
-# model/sphere.h is what checkpoint_read() fills; job/job.h reads the job text a checkpoint keeps.
+# model/sphere.h is what checkpoint_read() fills; job/job.h reads the job text a checkpoint keeps, and
+# model/body.h makes its bodies of it.
 why=
 for file in postproc/*.[ch]; do
     for header in $(includes "$file"); do
         case $header in
-        base/* | store/* | model/sphere.h | job/job.h) ;;
+        base/* | store/* | model/sphere.h | model/body.h | job/job.h) ;;
         *) grep -qxF "$header" <<< "$spoken" || why+=" $file includes $header;" ;;
         esac
     done
