@@ -267,19 +267,36 @@ TEST(a_shallow_fold_is_one_contact_a_steep_one_two)
 
 TEST(a_thin_wedge_is_felt_on_its_near_side_only)
 {
-    /* A knife of 30 degrees, its edge along y, pointing to -x; the sphere lies on its upper
-     * side. */
-    struct vec3 vertices[6] = {{0, -5, 0}, {5, -5, 1.34}, {5, -5, -1.34},
-                               {0, 5, 0},  {5, 5, 1.34},  {5, 5, -1.34}};
+    /* A knife of 20 degrees, its edge along y; a soft sphere sinks into its upper side so far
+     * that it reaches the lower one. */
+    const double c = cos(0.34906585), s = sin(0.34906585);
+    struct vec3 vertices[6] = {{0, -5, 0}, {5, -5, 0}, {5 * c, -5, -5 * s},
+                               {0, 5, 0},  {5, 5, 0},  {5 * c, 5, -5 * s}};
     int facets[2][4] = {{0, 3, 4, 1}, {0, 2, 5, 3}};
     struct job_body wedge = mesh_body(6, vertices, 2, facets);
     struct scene scene;
-    scene_build(&scene, STEEL, 0.5, 1.0, 1, &wedge, 1, 1.0);
-    const double length = sqrt(25.0 + 1.34 * 1.34);
-    const double x = 0.3, height = 0.999; /* above the upper side, 0.3 from the edge */
-    EXPECT(contacts_at(&scene, (5.0 * x - 1.34 * height) / length, 0.0,
-                       (1.34 * x + 5.0 * height) / length) == 1);
-    EXPECT(scene.spheres.force[0].lane[2] > 0.0);
+    scene_build(&scene, RUBBER, 0.5, 1.0, 1, &wedge, 1, 1.0);
+    EXPECT(contacts_at(&scene, 0.35, 0.0, 0.8) == 1);
+    EXPECT(scene.spheres.force[0].lane[2] > 0.0 && scene.spheres.force[0].lane[0] == 0.0);
+    scene_clear(&scene);
+}
+
+TEST(a_contact_stands_until_another_is_clearly_deeper)
+{
+    struct vec3 vertices[6];
+    int facets[2][4];
+    struct job_body fold = fold_body(vertices, facets, 0.2);
+    const struct vec3 zero = {0, 0, 0};
+    const double places[4] = {-0.01, 3e-4, 0.01, -3e-4}; /* across the fold [m] */
+    struct scene scene;
+    scene_build(&scene, RUBBER, 0.5, 1.0, 1, &fold, 1, 1.0);
+    for (int k = 0; k < 4; k++) {
+        put_sphere(&scene, 0, (struct vec3){places[k], 0, 0.99 / cos(0.1)}, zero, zero);
+        search(&scene, true);
+        apply(&scene);
+        EXPECT(count_contacts(&scene) == 1);
+        EXPECT(scene.facets.list[k / 2].history[CONTACT_RADIUS_LANE] > 0.0);
+    }
     scene_clear(&scene);
 }
 
