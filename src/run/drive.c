@@ -36,6 +36,17 @@ struct drive {
     char *stop_path;
 };
 
+/* Only rank 0 holds the folder, but all ranks write into the checkpoint's file. */
+static void share_path(struct drive *drive)
+{
+    char *path = drive->folder.path;
+    int64_t size = path != NULL ? (int64_t)strlen(path) + 1 : 0;
+    comm_broadcast(drive->comm, &size, sizeof size);
+    if (drive->comm->rank != 0)
+        drive->folder.path = path = array_allocate((size_t)size, 1);
+    comm_broadcast(drive->comm, path, (size_t)size);
+}
+
 static int open_folder(struct drive *drive)
 {
     int words[2] = {REPORT_FINISHED, 0};
@@ -57,6 +68,8 @@ static int open_folder(struct drive *drive)
     }
     comm_broadcast(drive->comm, words, sizeof words);
     drive->resumes = words[1] != 0;
+    if (words[0] == REPORT_FINISHED)
+        share_path(drive);
     return words[0];
 }
 
@@ -274,9 +287,11 @@ int drive_run(const struct comm *comm, const struct options *options, const stru
                 status = finish(&drive, loop(&drive));
             simulation_destroy(&drive.sim);
         }
-        if (comm->rank == 0)
-            run_folder_close(&drive.folder);
     }
+    if (comm->rank == 0)
+        run_folder_close(&drive.folder);
+    else
+        free(drive.folder.path);
     free(drive.stop_path);
     return status;
 }
