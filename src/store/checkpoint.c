@@ -1,18 +1,19 @@
 /*
  * See checkpoint.h.
  *
- * Writing has three parts.  One rank lays the whole file out and gives it its space on the disk, so that a
- * full disk, a quota or a file-size limit shows itself where it is an error of one process, not in the
- * midst of a collective call, where MPI's files may hang.  Then all ranks fill in their slices through
- * parallel HDF5; each rank writes its own contiguous run of each data set, so there is nothing for
- * collective buffering to gather, and a rank whose disk fails keeps nobody waiting.  Last the file is
- * forced to the disk and renamed.  Because one rank alone decides the layout, bytes cannot depend on the
- * number of ranks.
+ * Writing has three parts.  One rank lays the whole file out and gives it its space on the
+ * disk, so that a full disk, a quota or a file-size limit shows itself where it is an error
+ * of one process, not in the midst of a collective call, where MPI's files may hang.  Then
+ * all ranks fill in their slices through parallel HDF5; each rank writes its own contiguous
+ * run of each data set, so there is nothing for collective buffering to gather, and a rank
+ * whose disk fails keeps nobody waiting.  Last the file is forced to the disk and renamed.
+ * Because one rank alone decides the layout, bytes cannot depend on the number of ranks.
  *
- * Metadata carry HDF5's own checksums, rows those of store/table.h, the rest an attribute `checksum`.
- * A drawback: the reserved space must be there beside the older checkpoints.
+ * Metadata carry HDF5's own checksums, rows those of store/table.h, the rest an attribute
+ * `checksum`.  A drawback: the reserved space must be there beside the older checkpoints.
  *
- * Format versions count up.  A program reads its own version and all before; of a newer one it says so.
+ * Format versions count up.  A program reads its own version and all before; of a newer one
+ * it says so.
  */
 #include "store/checkpoint.h"
 
@@ -43,7 +44,7 @@ static const struct field SUMS = {"sums",
                                   sizeof(struct exact_sum) / sizeof(int64_t),
                                   0};
 
-/* ---------------------------------------------------------------------------------------- tables */
+/* ----------------------------------------------------------------------------------- tables */
 
 static int compare_int64(int64_t a, int64_t b)
 {
@@ -187,7 +188,7 @@ static void collect(struct table tables[N_TABLES], const struct comm *comm,
         table_arrange(&tables[k], comm, checkpoint->next_id);
 }
 
-/* -------------------------------------------------------------------------------------- agreement */
+/* -------------------------------------------------------------------------------- agreement */
 
 /* Did all go well on all ranks?  If not, rank 0 gets the first rank's reason.  Collective. */
 static bool all_well(const struct comm *comm, char **why)
@@ -209,7 +210,7 @@ static bool all_well(const struct comm *comm, char **why)
     return false;
 }
 
-/* ----------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------- writing */
 
 static int64_t checksum(const void *bytes, size_t n)
 {
@@ -285,7 +286,7 @@ static char *lay_out(const char *path, const struct checkpoint *checkpoint,
     if (why != NULL)
         return why;
     struct h5 h5;
-    h5_create_to_fill(&h5, path);
+    h5_create(&h5, path);
     put_run(&h5, checkpoint, tables);
     put_monitors(&h5, checkpoint->n_monitors, totals);
     h5_group(&h5, "/checksums");
@@ -303,8 +304,8 @@ static void say_why(const char *path, const char *why)
         path, why);
 }
 
-/* Ends the program.  Parallel HDF5 can neither close nor forget a file when a part of it failed on some
- * rank; that disk has failed after it had promised the space. */
+/* Ends the program.  Parallel HDF5 can neither close nor forget a file when a part of it
+ * failed on some rank; that disk has failed after it had promised the space. */
 static _Noreturn void abandon(const struct comm *comm, const char *path, const char *temporary,
                               const char *why)
 {
@@ -382,7 +383,7 @@ int checkpoint_write(const struct comm *comm, const char *path,
     return status;
 }
 
-/* ----------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------- reading */
 
 /* A text with its checksum. */
 static char *get_document(struct h5 *h5, const char *path)
@@ -515,8 +516,8 @@ static char *read_header(const char *path, struct checkpoint *checkpoint,
     return h5.why;
 }
 
-/* Values that the program would stumble over.  Bodies, features and materials are counted by the job,
- * which the caller knows. */
+/* Values that the program would stumble over.  Bodies, features and materials are counted by
+ * the job, which the caller knows. */
 static char *check_values(const struct table tables[N_TABLES], const struct spheres *spheres)
 {
     for (int i = 0; i < spheres->n_owned; i++)

@@ -223,7 +223,7 @@ char *file_make_folders(const char *path)
     return error != 0 ? reason(error) : NULL;
 }
 
-/* --------------------------------------------------------------------------------- files of a step */
+/* -------------------------------------------------------------------------- files of a step */
 
 char *file_step_path(const char *folder, int64_t step)
 {

@@ -1,11 +1,11 @@
 /*
  * See h5.h.
  *
- * HDF5 does not survive a disk that fails it: after a failed close the process crashes when it ends, and
- * ranks that close a file together wait for one that failed.  So a new file is laid out in memory (an
- * anonymous file of which only the pages in use exist, so it may be as long as it likes, is put in place
- * of the one that HDF5 opened) and copied to the disk by plain calls, whose failures harm nobody; and
- * what ranks fill in together has nothing to write on closing.  A drawback: this needs Linux.
+ * HDF5 does not survive a disk that fails it: after a failed close the process crashes when it
+ * ends.  So a new file is laid out in memory and copied to the disk by plain calls, whose
+ * failures harm nobody.  The memory is an anonymous file, put in place of the one that HDF5
+ * opened; only its pages in use exist, so it may be as long as it likes.  A drawback: this needs
+ * Linux.
  */
 #include "store/h5.h"
 
@@ -25,7 +25,7 @@
 
 enum { TRANSFER_MAX = 1 << 29, CHUNK_ROWS = 8192, NAME_MAX_LENGTH = 512 };
 
-/* ---------------------------------------------------------------------------------------- failures */
+/* --------------------------------------------------------------------------------- failures */
 
 /* The innermost entry of HDF5's error stack says what really happened. */
 static herr_t innermost(unsigned n, const H5E_error2_t *error, void *text)
@@ -73,7 +73,7 @@ static void fail_at(struct h5 *h5, const char *object)
     free(reason);
 }
 
-/* -------------------------------------------------------------------------------- open and close */
+/* --------------------------------------------------------------------------- open and close */
 
 static void prepare(struct h5 *h5)
 {
@@ -81,12 +81,12 @@ static void prepare(struct h5 *h5)
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
-/* Versions of the format whose metadata carry checksums; no locks, for nobody reads what is being
- * written, and some file systems have none. */
-static hid_t access_properties(H5F_libver_t version)
+/* One version of the format, whose metadata carry checksums; no locks, for nobody reads what is
+ * being written, and some file systems have none. */
+static hid_t access_properties(void)
 {
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_libver_bounds(access, version, version);
+    H5Pset_libver_bounds(access, H5F_LIBVER_V110, H5F_LIBVER_V110);
     H5Pset_file_locking(access, false, true);
     return access;
 }
@@ -102,10 +102,10 @@ static void keep_in_memory(struct h5 *h5)
         h5_fail(h5, "%s", strerror(errno));
 }
 
-static void create(struct h5 *h5, const char *path, H5F_libver_t version)
+void h5_create(struct h5 *h5, const char *path)
 {
     prepare(h5);
-    const hid_t access = access_properties(version), creation = H5Pcreate(H5P_FILE_CREATE);
+    const hid_t access = access_properties(), creation = H5Pcreate(H5P_FILE_CREATE);
     H5Pset_obj_track_times(creation, false);
     h5->file = H5Fcreate(path, H5F_ACC_TRUNC, creation, access);
     if (h5->file < 0)
@@ -116,22 +116,10 @@ static void create(struct h5 *h5, const char *path, H5F_libver_t version)
     H5Pclose(access);
 }
 
-/* The newer version's chunk indices carry checksums. */
-void h5_create(struct h5 *h5, const char *path)
-{
-    create(h5, path, H5F_LIBVER_V110);
-}
-
-/* The newer version's superblock is written whenever a file that was open for writing is closed. */
-void h5_create_to_fill(struct h5 *h5, const char *path)
-{
-    create(h5, path, H5F_LIBVER_V18);
-}
-
 void h5_open(struct h5 *h5, const char *path)
 {
     prepare(h5);
-    const hid_t access = access_properties(H5F_LIBVER_V110);
+    const hid_t access = access_properties();
     h5->file = H5Fopen(path, H5F_ACC_RDONLY, access);
     if (h5->file < 0)
         fail_at(h5, "");
@@ -141,10 +129,10 @@ void h5_open(struct h5 *h5, const char *path)
 void h5_open_shared(struct h5 *h5, const char *path, const struct comm *comm)
 {
     prepare(h5);
-    /* Open MPI's own way with files leaves locks and semaphores about, and hangs where disks fail; it
-     * has a better one, chosen when the first file is opened. */
+    /* Open MPI's own way with files leaves locks and semaphores about, and hangs where disks
+     * fail; it has a better one, chosen when the first file is opened. */
     setenv("OMPI_MCA_io", "^ompio", false);
-    const hid_t access = access_properties(H5F_LIBVER_V110);
+    const hid_t access = access_properties();
     H5Pset_fapl_mpio(access, comm->mpi, MPI_INFO_NULL);
     h5->file = H5Fopen(path, H5F_ACC_RDWR, access);
     if (h5->file < 0)
@@ -187,7 +175,7 @@ void h5_group(struct h5 *h5, const char *path)
     H5Pclose(creation);
 }
 
-/* -------------------------------------------------------------------------------------- attributes */
+/* ------------------------------------------------------------------------------- attributes */
 
 static void put_attribute(struct h5 *h5, const char *object, const char *name, hid_t file_type,
                           hid_t memory_type, const void *value)
@@ -304,7 +292,7 @@ bool h5_has(struct h5 *h5, const char *path)
     return h5->why == NULL && H5Lexists(h5->file, path, H5P_DEFAULT) > 0;
 }
 
-/* -------------------------------------------------------------------------------------- data sets */
+/* -------------------------------------------------------------------------------- data sets */
 
 static hid_t file_type(enum field_type type)
 {
@@ -463,9 +451,9 @@ int64_t h5_count_rows(struct h5 *h5, const char *path, const struct field *field
     return h5->why == NULL ? n : 0;
 }
 
-/* Moves rows begin .. begin + n - 1 between file and memory, in pieces that MPI's int counts can hold.
- * Each rank moves its own contiguous run without the others, so that one whose disk fails leaves nobody
- * waiting. */
+/* Moves rows begin .. begin + n - 1 between file and memory, in pieces that MPI's int counts
+ * can hold.  Each rank moves its own contiguous run without the others, so that one whose
+ * disk fails leaves nobody waiting. */
 static void transfer(struct h5 *h5, hid_t set, const struct field *field, int64_t begin,
                      int64_t n, void *rows, bool write)
 {

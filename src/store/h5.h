@@ -1,13 +1,15 @@
 /*
  * HDF5, checked.
  *
- * The first failure of a file is kept as `why` and everything after it does nothing, so a sequence of
- * calls reads straight on and is tested once, at the end.  HDF5 itself prints nothing.  Objects are named
- * by their path in the file.  Bytes depend on nothing but what is written: no times, one format version,
- * little-endian.  Reading never trusts the file: type and shape are compared with what is expected.
+ * The first failure of a file is kept as `why` and everything after it does nothing, so a
+ * sequence of calls reads straight on and is tested once, at the end.  HDF5 itself prints
+ * nothing.  Objects are named by their path in the file.  Bytes depend on nothing but what is
+ * written: no times, one format version, little-endian.  Reading never trusts the file: type
+ * and shape are compared with what is expected.
  *
- * Row data lie contiguous and unfiltered, in space that exists once h5_save() has returned; writing rows
- * changes nothing else.  So one process may lay the file out and many fill it in.
+ * Row data lie contiguous and unfiltered, in space that exists once h5_save() has returned;
+ * writing rows changes none of the rest.  So one process may lay the file out and many fill it
+ * in.
  */
 #ifndef TREMIE_STORE_H5_H
 #define TREMIE_STORE_H5_H
@@ -28,14 +30,12 @@ struct h5 {
 
 /* A new, empty file at `path`; what is put into it stays in memory until h5_save().  Local. */
 void h5_create(struct h5 *h5, const char *path);
-/* The same for one whose rows are written later, by all ranks after h5_open_shared().  Local. */
-void h5_create_to_fill(struct h5 *h5, const char *path);
-/* Closes a new file and puts it on the disk, space for rows not yet written included.  Local. */
+/* Closes a new file and puts it on the disk, with space for rows not yet written.  Local. */
 void h5_save(struct h5 *h5, const char *path);
 /* For reading, by one process.  Local. */
 void h5_open(struct h5 *h5, const char *path);
-/* For all ranks to write rows that were declared.  When that fails on some rank, no rank may close the
- * file, nor end in MPI_Finalize: they would wait for each other.  Collective. */
+/* For all ranks to write rows that were declared.  When that fails on some rank, no rank may
+ * close the file, nor end in MPI_Finalize: they would wait for each other.  Collective. */
 void h5_open_shared(struct h5 *h5, const char *path, const struct comm *comm);
 /* Closes the file, if it is open.  Collective after h5_open_shared, else local. */
 void h5_close(struct h5 *h5);

@@ -335,7 +335,7 @@ static int judge(const char *path, const struct look *look, bool fresh)
 {
     if (look->foreign != NULL) {
         report_error(
-            "%s holds other things than a run, %s for one; name a new or empty folder with --out",
+            "%s holds other things than a run (%s); name a new or empty folder with --out",
             path, look->foreign);
         return REPORT_BAD_INPUT;
     }
@@ -462,8 +462,8 @@ int run_folder_write_file(const char *path, const char *text)
     if (why == NULL)
         return REPORT_FINISHED;
     report_error(
-        "cannot write %s: %s; free some space or mend the disk, then run the same command again",
-        path, why);
+        "cannot write %s: %s; free some space or mend the disk and run the command again", path,
+        why);
     free(why);
     return REPORT_STORAGE;
 }

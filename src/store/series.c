@@ -1,8 +1,9 @@
 /*
  * See series.h.
  *
- * Space is reserved before HDF5 begins, so that a full disk shows itself in the simplest place.  Columns carry HDF5's Fletcher32 checksums, which any reader verifies; the order
- * of columns is an attribute of the table's group.
+ * Space is reserved before HDF5 begins, so that a full disk shows itself in the simplest
+ * place.  Columns carry HDF5's Fletcher32 checksums, which any reader verifies; the order of
+ * columns is an attribute of the table's group.
  */
 #include "store/series.h"
 
@@ -100,7 +101,7 @@ int series_column_index(const struct series *series, const char *name)
     return -1;
 }
 
-/* ----------------------------------------------------------------------------------------- writing */
+/* ---------------------------------------------------------------------------------- writing */
 
 static char *column_names(const struct series *series)
 {
@@ -188,10 +189,10 @@ int series_write_segment(const char *path, const char *title, int n_tables,
     return status;
 }
 
-/* ----------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------- reading */
 
-/* Index of the column, which is added, not-a-number in all rows so far, if it is new: outputs may change
- * when a run is resumed. */
+/* Index of the column, which is added, not-a-number in all rows so far, if it is new:
+ * outputs may change when a run is resumed. */
 static int find_or_add(struct series *series, const char *name, const char *unit,
                        const char *help)
 {
@@ -255,8 +256,8 @@ static void check_format(struct h5 *h5)
     free(format);
 }
 
-/* Appends what a segment holds of the table; a table that it does not have adds nothing.  Returns NULL or
- * the reason; then nothing was appended. */
+/* Appends what a segment holds of the table; a table that it does not have adds
+ * nothing.  Returns NULL or the reason; then nothing was appended. */
 static char *append_segment(struct series *series, const char *path)
 {
     struct h5 h5;

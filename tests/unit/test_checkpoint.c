@@ -1,8 +1,5 @@
-/* Checkpoints: the same bytes from any number of ranks, the same state on any number of ranks, and every
- * damage noticed.
- *
- * ranks: 1 2 3 5
- */
+/* Checkpoints: the same bytes from any number of ranks, the same state on any number of
+ * ranks, and every damage noticed.  ranks: 1 2 3 5 / */
 #include "store/checkpoint.h"
 
 #include <stdlib.h>
@@ -20,7 +17,8 @@
 
 enum { N_IDS = 1700, N_MONITORS = 3 };
 
-/* ------------------------------------------------------------------------------- a state to be saved */
+/* ------------------------------------------------------------------------------- a state to
+ * be saved */
 
 /* Every fifth id is gone, as after removals; the rest are dealt out like cards. */
 static bool exists(int64_t id)
@@ -123,7 +121,7 @@ static void clear(struct checkpoint *checkpoint, struct spheres *spheres)
     spheres_clear(spheres);
 }
 
-/* ------------------------------------------------------------------------------------------- helpers */
+/* ---------------------------------------------------------------------------------- helpers */
 
 /* A path in the scratch folder, the same on all ranks. */
 static char *scratch(const struct comm *comm, const char *name)
@@ -213,7 +211,7 @@ static int read_alone(const char *path, bool *same)
     return status;
 }
 
-/* --------------------------------------------------------------------------------------------- tests */
+/* ------------------------------------------------------------------------------------ tests */
 
 TEST(bytes_do_not_depend_on_ranks)
 {
