@@ -4,7 +4,7 @@
  * HDF5 does not survive a disk that fails it: after a failed close the process crashes when it
  * ends.  So a new file is laid out in memory and copied to the disk by plain calls, whose
  * failures harm nobody.  The memory is an anonymous file, put in place of the one that HDF5
- * opened; only its pages in use exist, so it may be as long as it likes.  A drawback: this needs
+ * opened; only its pages in use exist, so it may be as long as it likes.  A drawback: it needs
  * Linux.
  */
 #include "store/h5.h"
