@@ -1,94 +1,116 @@
 /*
- * See integrate.h.  The two halves of a row are vectors of four; what is spent of the
- * allowances is gathered by component, whose norm bounds the largest |v| / allowance and needs
- * no square root a sphere.
+ * See integrate.h.  Rows are worked on as pairs of lanes, which every x86-64 has.  What is spent of the
+ * allowances is gathered by component, whose norm bounds the largest |v| / allowance and needs no square
+ * root a sphere.
  */
 #include "physics/integrate.h"
 
 #include <math.h>
+#include <stdint.h>
 
-typedef double quad __attribute__((vector_size(32), may_alias));
+typedef double two __attribute__((vector_size(16), may_alias));
+typedef int64_t two_bits __attribute__((vector_size(16), may_alias));
 
+/* Running maxima of |v| / allowance: x and y, and z (in lane 0), for both lists. */
 struct spent {
-    double component[2][3];
-    double bad; /* stays 0.0 as long as everything is finite: x - x is NaN otherwise */
+    two xy[2], z[2];
+    two bad; /* stays 0.0 as long as everything is finite: x - x is NaN otherwise */
 };
 
-static inline void gather_spent(struct spent *spent, const double *v, const double inverse[2])
+static inline two absolute(two a)
 {
-    for (int k = 0; k < 3; k++) {
-        const double speed = v[k] < 0.0 ? -v[k] : v[k];
-        for (int s = 0; s < 2; s++) {
-            const double share = speed * inverse[s];
-            spent->component[s][k] =
-                share > spent->component[s][k] ? share : spent->component[s][k];
-        }
+    return (two)((two_bits)a & INT64_MAX);
+}
+
+static inline two larger(two a, two b)
+{
+    const two_bits first = a > b;
+    return (two)(((two_bits)a & first) | ((two_bits)b & ~first));
+}
+
+static inline void gather_spent(struct spent *spent, two v_xy, two v_z, const double inverse[2])
+{
+    const two speed_xy = absolute(v_xy), speed_z = absolute(v_z);
+    for (int s = 0; s < 2; s++) {
+        spent->xy[s] = larger(speed_xy * inverse[s], spent->xy[s]);
+        spent->z[s] = larger(speed_z * inverse[s], spent->z[s]);
     }
 }
 
 /* What mass-proportional damping takes in a step: c m v(n)^2 dt [J]. */
-static inline double background_loss(const struct integrate_work *work, quad before, quad after,
-                                     double inverse_mass)
+static double background_loss(const struct integrate_work *work, const double *before, const double *after,
+                              double inverse_mass)
 {
-    if (!(work->damping > 0.0))
-        return 0.0;
-    const quad v = 0.5 * (before + after);
-    const double speed2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
+    double speed2 = 0.0;
+    for (int k = 0; k < 3; k++) {
+        const double v = 0.5 * (before[k] + after[k]);
+        speed2 += v * v;
+    }
     return work->damping * work->dt / inverse_mass * speed2;
 }
 
 /* The two factors of v(n+1/2) = keep v(n-1/2) + push a(n) dt under mass-proportional damping c:
- * (1 - c dt/2)/(1 + c dt/2) and 1/(1 + c dt/2). (5.3) */
-static inline void move_spheres(struct integrate_work *work, struct spent *spent, double keep,
-                                double push, bool ledger)
+ * (1 - c dt/2)/(1 + c dt/2) and 1/(1 + c dt/2).                                                 (5.3) */
+static inline __attribute__((always_inline)) void
+move_spheres(struct integrate_work *work, struct spent *spent, double keep, double push, bool ledger, bool damped)
 {
-    const double dt = work->dt;
-    const quad fall = {push * dt * work->gravity[0], push * dt * work->gravity[1],
-                       push * dt * work->gravity[2], 0.0};
-    const quad step = {dt, dt, dt, 0.0}, velocity_only = {1.0, 1.0, 1.0, 0.0};
-    const quad kept = {keep, keep, keep, 1.0}, zero = {0.0, 0.0, 0.0, 0.0};
+    const double dt = work->dt, kick = push * dt;
+    const two fall_xy = {kick * work->gravity[0], kick * work->gravity[1]}, fall_z = {kick * work->gravity[2], 0.0};
+    const two first = {1.0, 0.0}, keep_z = {keep, 1.0}, step_z = {dt, 0.0}, zero = {0.0, 0.0};
     for (int i = 0; i < work->n; i++) {
-        quad *motion = (quad *)(void *)&work->motion[i], *spin = (quad *)(void *)&work->spin[i];
-        quad *force = (quad *)(void *)&work->force[i];
-        const double radius = motion[0][3], inverse_mass = spin[1][3],
-                     inverse_radius = spin[0][3];
-        /* Inertia of a sphere 2/5 m R^2. (5.2) */
-        const double turn = push * dt * 2.5 * inverse_mass * inverse_radius * inverse_radius;
-        const quad v =
-            motion[1] * kept + force[0] * velocity_only * (push * dt * inverse_mass) + fall;
-        const quad w = spin[1] * kept + force[1] * velocity_only * turn;
+        two *motion = (two *)(void *)&work->motion[i], *spin = (two *)(void *)&work->spin[i];
+        two *force = (two *)(void *)&work->force[i];
+        const double radius = motion[1][1], inverse_mass = spin[3][1], inverse_radius = spin[1][1];
+        const double gain = kick * inverse_mass;
+        /* Inertia of a sphere 2/5 m R^2.                                                        (5.2) */
+        const double turn = kick * 2.5 * inverse_mass * inverse_radius * inverse_radius;
+        const two v_xy = motion[2] * keep + force[0] * gain + fall_xy;
+        const two v_z = motion[3] * keep_z + force[1] * (first * gain) + fall_z;
+        const two w_xy = spin[2] * keep + force[2] * turn;
+        const two w_z = spin[3] * keep_z + force[3] * (first * turn);
         if (ledger) {
-            work->dissipated_friction[i] += force[0][3];
-            work->dissipated_damping[i] +=
-                force[1][3] + background_loss(work, motion[1], v, inverse_mass);
+            work->dissipated_friction[i] += force[1][1];
+            work->dissipated_damping[i] += force[3][1];
         }
-        const quad x = motion[0] + v * step;
-        motion[0] = x;
-        motion[1] = v;
-        spin[1] = w;
-        spin[0] =
-            w * (quad){radius, radius, radius, 0.0} + (quad){0.0, 0.0, 0.0, inverse_radius};
+        if (ledger && damped) {
+            const double before[3] = {motion[2][0], motion[2][1], motion[3][0]};
+            const double after[3] = {v_xy[0], v_xy[1], v_z[0]};
+            work->dissipated_damping[i] += background_loss(work, before, after, inverse_mass);
+        }
+        const two x_xy = motion[0] + v_xy * dt, x_z = motion[1] + v_z * step_z;
+        motion[0] = x_xy;
+        motion[1] = x_z;
+        motion[2] = v_xy;
+        motion[3] = v_z;
+        spin[0] = w_xy * radius;
+        spin[1] = w_z * (first * radius) + (two){0.0, inverse_radius};
+        spin[2] = w_xy;
+        spin[3] = w_z;
         force[0] = zero;
         force[1] = zero;
-        const quad sum = x + v + w * velocity_only;
-        spent->bad += (sum[0] - sum[0]) + (sum[1] - sum[1]) + (sum[2] - sum[2]);
-        const double speed[3] = {v[0], v[1], v[2]};
-        gather_spent(spent, speed, work->inverse_allowance[i]);
+        force[2] = zero;
+        force[3] = zero;
+        const two sum = (x_xy + v_xy) + (w_xy + x_z) + (v_z + w_z);
+        spent->bad += sum - sum;
+        gather_spent(spent, v_xy, v_z, work->inverse_allowance[i]);
     }
 }
 
 void integrate_spheres(struct integrate_work *work)
 {
-    struct spent spent = {{{0.0}}, 0.0};
+    struct spent spent = {{{0.0}}, {{0.0}}, {0.0}};
     const double half = 0.5 * work->damping * work->dt;
     const double push = 1.0 / (1.0 + half), keep = (1.0 - half) / (1.0 + half);
-    if (work->ledger)
-        move_spheres(work, &spent, keep, push, true);
+    const bool damped = work->damping > 0.0;
+    if (work->ledger && damped)
+        move_spheres(work, &spent, keep, push, true, true);
+    else if (work->ledger)
+        move_spheres(work, &spent, keep, push, true, false);
     else
-        move_spheres(work, &spent, keep, push, false);
+        move_spheres(work, &spent, keep, push, false, false);
     for (int s = 0; s < 2; s++) {
-        const double *c = spent.component[s];
+        const double c[3] = {spent.xy[s][0], spent.xy[s][1], spent.z[s][0]};
         work->spent[s] = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]) * work->dt;
     }
-    work->bad = !(spent.bad == 0.0);
+    work->bad = !(spent.bad[0] == 0.0 && spent.bad[1] == 0.0);
 }
