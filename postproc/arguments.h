@@ -1,5 +1,6 @@
 /*
- * Command lines of the tools: one table of options gives parsing, messages and the page of --help.
+ * Command lines of the tools: one table of options gives parsing, messages and the page of
+ * --help.
  *
  * Options may stand anywhere among the other arguments, as `--name value`, `--name=value` or
  * `-o value`; `--` ends them.  What is wrong is said as `error: what; what to do`.
@@ -38,8 +39,9 @@ struct arguments_page {
 enum { ARGUMENTS_GO_ON = -1 };
 
 /*
- * Reads the command line; the other arguments are moved to argv[1..*n].  Returns ARGUMENTS_GO_ON, or the
- * status to exit with: 0 after --help, 2 after a mistake, which has been said.
+ * Reads the command line; the other arguments are moved to argv[1..*n].  Returns
+ * ARGUMENTS_GO_ON, or the status to exit with: 0 after --help, 2 after a mistake, which has
+ * been said.
  */
 int arguments_read(const struct arguments_page *page, int argc, char **argv, int *n);
 

@@ -1,8 +1,9 @@
 /*
- * See camera.h.  Fitting: seen from far away along `ahead`, a ball at camera coordinates (x, y, z)
- * relative to the middle of the scene lies inside the right side of the view of half-angle a, with the eye
- * at (e, 0, -d), when x - z tan a + r / cos a <= e + d tan a; likewise on the left.  So the largest left
- * hand sides over all balls give e and the least d at once, per direction; the larger d is taken.
+ * See camera.h.  Fitting: seen from far away along `ahead`, a ball at camera coordinates (x, y,
+ * z) relative to the middle of the scene lies inside the right side of the view of half-angle
+ * a, with the eye at (e, 0, -d), when x - z tan a + r / cos a <= e + d tan a; likewise on the
+ * left.  So the largest left hand sides over all balls give e and the least d at once, per
+ * direction; the larger d is taken.
  */
 #include "camera.h"
 

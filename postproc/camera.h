@@ -1,8 +1,9 @@
 /*
  * A perspective camera: from space to the picture.
  *
- * Camera coordinates have x to the right, y upwards and z away from the eye (depth).  The picture plane
- * is at depth 1, so that a point shows at (x/z, y/z) times `focal` pixels from the principal point.
+ * Camera coordinates have x to the right, y upwards and z away from the eye (depth).  The
+ * picture plane is at depth 1, so that a point shows at (x/z, y/z) times `focal` pixels from
+ * the principal point.
  */
 #ifndef TREMIE_POSTPROC_CAMERA_H
 #define TREMIE_POSTPROC_CAMERA_H
@@ -28,9 +29,9 @@ struct camera_ball {
 };
 
 /*
- * Looks along the direction given by azimuth and elevation [degrees]: the eye stands at `azimuth` from
- * the -y axis towards +x and `elevation` above the horizon.  The nearest place is chosen from where all
- * balls fit the frame; zoom > 1 shows them larger about the middle.
+ * Looks along the direction given by azimuth and elevation [degrees]: the eye stands at
+ * `azimuth` from the -y axis towards +x and `elevation` above the horizon.  The nearest place
+ * is chosen from where all balls fit the frame; zoom > 1 shows them larger about the middle.
  */
 struct camera camera_fit(double azimuth, double elevation, double zoom,
                          struct camera_frame frame, int n, const struct camera_ball *balls);

@@ -86,7 +86,7 @@ void canvas_clear(struct canvas *canvas)
     *canvas = (struct canvas){0};
 }
 
-/* ---------------------------------------------------------------------------------------- spheres */
+/* ---------------------------------------------------------------------------------- spheres */
 
 /* The range of x/z (or y/z) that a ball covers, its centre at x and depth z. */
 static void slopes_of_ball(double x, double z, double radius, double slopes[2])
@@ -137,12 +137,12 @@ void canvas_sphere(struct canvas *canvas, const struct camera *camera, struct ve
                           bytes);
 }
 
-/* ------------------------------------------------------------------------------------------- light */
+/* ------------------------------------------------------------------------------------ light */
 
 enum { SHADE_PROBES = 12 };
 
-/* Probes on a spiral; its turn differs from sample to sample within a pixel, so that averaging a pixel's
- * samples looks in all their directions. */
+/* Probes on a spiral; its turn differs from sample to sample within a pixel, so that averaging
+ * a pixel's samples looks in all their directions. */
 static void spiral(int turn, double probes[SHADE_PROBES][2])
 {
     const double golden = 2.399963229728653;
@@ -214,7 +214,7 @@ void canvas_light(struct canvas *canvas, const struct camera *camera, double rea
                 light_sample(canvas, camera, x, y, reach, probes[(y & 1) * 2 + (x & 1)]);
 }
 
-/* -------------------------------------------------------------------------------- facets and edges */
+/* ------------------------------------------------------------------------- facets and edges */
 
 /* Cuts away what lies behind the eye; returns the corners left. */
 static int clip_near(int n, const struct vec3 *corners, struct vec3 *kept)
@@ -283,7 +283,8 @@ void canvas_facet(struct canvas *canvas, const struct camera *camera, int n,
         }
 }
 
-/* Share of the way from a to b at which p is nearest, 0 to 1, and the square of the distance there. */
+/* Share of the way from a to b at which p is nearest, 0 to 1, and the square of the distance
+ * there. */
 static double nearest_share(const double a[2], const double b[2], const double p[2],
                             double *square)
 {
@@ -296,9 +297,9 @@ static double nearest_share(const double a[2], const double b[2], const double p
     return share;
 }
 
-/* Draws a line between points of the plane whose inverse depths are given [1/m]; it is hidden by what is
- * nearer by more than `slack`.  It goes by strips along its longer direction, so that a long line costs no
- * more than the samples near it. */
+/* Draws a line between points of the plane whose inverse depths are given [1/m]; it is hidden
+ * by what is nearer by more than `slack`.  It goes by strips along its longer direction, so
+ * that a long line costs no more than the samples near it. */
 static void draw_line(struct canvas *canvas, const double ends[2][2], const double inverse[2],
                       double width, double slack, struct colours_rgb colour)
 {
@@ -348,7 +349,7 @@ void canvas_edge(struct canvas *canvas, const struct camera *camera, struct vec3
               colour);
 }
 
-/* ------------------------------------------------------------------------------ on the plane */
+/* ----------------------------------------------------------------------------- on the plane */
 
 void canvas_rectangle(struct canvas *canvas, double left, double top, double right,
                       double bottom, struct colours_rgb colour)
@@ -397,7 +398,7 @@ void canvas_text(struct canvas *canvas, double x, double y, double height,
     }
 }
 
-/* ---------------------------------------------------------------------------------------- the image */
+/* -------------------------------------------------------------------------------- the image */
 
 void canvas_develop(const struct canvas *canvas, struct image *image)
 {

@@ -1,12 +1,14 @@
 /*
- * Drawing with depth: spheres, facets, lines and text, finely sampled, then averaged into a picture.
+ * Drawing with depth: spheres, facets, lines and text, finely sampled, then averaged into a
+ * picture.
  *
- * Spheres go first: every sample keeps the nearest surface (a z-buffer), with its normal and colour, found
- * by cutting the ray of the sample with the sphere, so outlines and intersections are exact at any
- * size.  canvas_light() then lights all of it at once: a lamp, a sky, and shade in crevices, found from
- * the depths around a sample.  Facets and lines are laid over, tested against the depths; text and
- * marks come last.  A drawback: glassy facets are not sorted, so where several overlap their mix
- * depends on the order of drawing; they are faint and of one colour, and that does not show.
+ * Spheres go first: every sample keeps the nearest surface (a z-buffer), with its normal and
+ * colour, found by cutting the ray of the sample with the sphere, so outlines and intersections
+ * are exact at any size.  canvas_light() then lights all of it at once: a lamp, a sky, and
+ * shade in crevices, found from the depths around a sample.  Facets and lines are laid over,
+ * tested against the depths; text and marks come last.  A drawback: glassy facets are not
+ * sorted, so where several overlap their mix depends on the order of drawing; they are faint
+ * and of one colour, and that does not show.
  */
 #ifndef TREMIE_POSTPROC_CANVAS_H
 #define TREMIE_POSTPROC_CANVAS_H
@@ -27,8 +29,8 @@ struct canvas {
 
 enum canvas_anchor { CANVAS_LEFT, CANVAS_MIDDLE, CANVAS_RIGHT };
 
-/* A canvas for a picture of width x height pixels, with its backdrop.  The camera that draws on it
- * works in samples. */
+/* A canvas for a picture of width x height pixels, with its backdrop.  The camera that draws on
+ * it works in samples. */
 void canvas_init(struct canvas *canvas, int width, int height);
 void canvas_clear(struct canvas *canvas);
 

@@ -1,6 +1,7 @@
 /*
- * Colours of pictures: a scale for numbers, from dark violet over teal to yellow, whose lightness grows
- * evenly (so that it also reads in grey and for most colour-blind people), and a palette for kinds.
+ * Colours of pictures: a scale for numbers, from dark violet over teal to yellow, whose
+ * lightness grows evenly (so that it also reads in grey and for most colour-blind people), and
+ * a palette for kinds.
  */
 #ifndef TREMIE_POSTPROC_COLOURS_H
 #define TREMIE_POSTPROC_COLOURS_H

@@ -96,8 +96,8 @@ static int compare_paths(const void *a, const void *b)
 char *content_open(struct content *content, const char *path)
 {
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
-    /* Our files are whole once they have their name, so readers need no lock, which some file systems
-     * do not have. */
+    /* Our files are whole once they have their name, so readers need no lock, which some file
+     * systems do not have. */
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     H5Pset_file_locking(access, false, true);
     *content = (struct content){.file = H5Fopen(path, H5F_ACC_RDONLY, access)};

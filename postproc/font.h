@@ -1,9 +1,10 @@
 /*
  * A tiny built-in font, so that pictures carry numbers without any library.
  *
- * Glyphs are bitmaps of 5 x 7 dots with two more rows for descenders.  They are not drawn as squares:
- * neighbouring dots are joined by strokes (diagonal ones only where no straight way joins them), so that
- * text looks drawn with a pen at any size.  Printable ASCII only; anything else shows as a box.
+ * Glyphs are bitmaps of 5 x 7 dots with two more rows for descenders.  They are not drawn as
+ * squares: neighbouring dots are joined by strokes (diagonal ones only where no straight way
+ * joins them), so that text looks drawn with a pen at any size.  Printable ASCII only; anything
+ * else shows as a box.
  */
 #ifndef TREMIE_POSTPROC_FONT_H
 #define TREMIE_POSTPROC_FONT_H

@@ -1,5 +1,6 @@
-/* See image.h.  libpng reports failures by longjmp; nothing that it could leave half done lives across
- * the jump but the stream and its own structures, which the caller of the jump's function holds. */
+/* See image.h.  libpng reports failures by longjmp; nothing that it could leave half done lives
+ * across the jump but the stream and its own structures, which the caller of the jump's
+ * function holds. */
 #include "image.h"
 
 #include <errno.h>

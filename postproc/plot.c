@@ -71,8 +71,8 @@ static void extend(double range[2], int n, const double *values)
     }
 }
 
-/* A range that is empty or a single number gets some width; others this share of it as air above, and
- * below where they go below zero. */
+/* A range that is empty or a single number gets some width; others this share of it as air
+ * above, and below where they go below zero. */
 static void relax(double range[2], double air)
 {
     if (!(range[0] <= range[1])) {

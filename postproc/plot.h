@@ -1,5 +1,6 @@
 /*
- * Line plots as SVG: panels one below the other, each with its axes, curves, level bands and a legend.
+ * Line plots as SVG: panels one below the other, each with its axes, curves, level bands and a
+ * legend.
  *
  * Arrays and texts are the caller's and must live until plot_write_svg().
  */

@@ -4,15 +4,15 @@
 
 #include "store/series.h"
 
-/* Reads a table of a run's folder.  Returns a REPORT_ status, the reason said; nothing to clear after a
- * failure. */
+/* Reads a table of a run's folder.  Returns a REPORT_ status, the reason said; nothing to clear
+ * after a failure. */
 int records_read(struct series *series, const char *run_folder, const char *table);
 
 /* A column as an array, which the caller frees; NULL when there is none. */
 double *records_column(const struct series *series, const char *name_format, ...)
     __attribute__((format(printf, 2, 3)));
-/* Sum, mean and largest of a column, last value; not-a-number when there is no such column or no row.
- * Rows where the value is not a number are left out. */
+/* Sum, mean and largest of a column, last value; not-a-number when there is no such column or
+ * no row.  Rows where the value is not a number are left out. */
 double records_sum(const struct series *series, const char *name);
 double records_mean(const struct series *series, const char *name);
 double records_max(const struct series *series, const char *name);

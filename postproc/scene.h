@@ -20,9 +20,9 @@ struct scene {
 };
 
 /*
- * Reads a checkpoint, or the newest one of a run's folder, verifying its checksums.  Returns a REPORT_
- * status, the reason said; then there is nothing to clear.  A job text that this version cannot
- * read is a warning.  Collective, meant for one rank.
+ * Reads a checkpoint, or the newest one of a run's folder, verifying its checksums.  Returns a
+ * REPORT_ status, the reason said; then there is nothing to clear.  A job text that this
+ * version cannot read is a warning.  Collective, meant for one rank.
  */
 int scene_read(struct scene *scene, const struct comm *comm, const char *path);
 void scene_clear(struct scene *scene);

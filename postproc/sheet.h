@@ -1,6 +1,6 @@
 /*
- * Sheets of text cells: aligned for a terminal, or as comma-separated values for other programs.
- * Cells are given row by row, as many as there are columns.
+ * Sheets of text cells: aligned for a terminal, or as comma-separated values for other
+ * programs.  Cells are given row by row, as many as there are columns.
  */
 #ifndef TREMIE_POSTPROC_SHEET_H
 #define TREMIE_POSTPROC_SHEET_H

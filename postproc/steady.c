@@ -20,7 +20,8 @@ struct moments {
 
 double steady_student(int degrees)
 {
-    /* Expansion in 1/degrees of the quantile about the normal one (Abramowitz and Stegun 26.7.5). */
+    /* Expansion in 1/degrees of the quantile about the normal one (Abramowitz and Stegun
+     * 26.7.5). */
     const double z = 1.959963984540054, v = degrees;
     const double z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z, z9 = z7 * z * z;
     return z + (z3 + z) / (4.0 * v) + (5.0 * z5 + 16.0 * z3 + 3.0 * z) / (96.0 * v * v) +
@@ -67,8 +68,9 @@ static struct moments moments_of(int n, const double *values)
 }
 
 /*
- * Is a trend there?  Slope and curvature are the components along the first two orthogonal polynomials of
- * equally spaced points, so each is tested by itself against what the parabola leaves over.
+ * Is a trend there?  Slope and curvature are the components along the first two orthogonal
+ * polynomials of equally spaced points, so each is tested by itself against what the parabola
+ * leaves over.
  */
 static bool has_trend(int n, const double *values, double mean)
 {

@@ -1,19 +1,21 @@
 /*
  * The steady part of a flow, and its rate with a confidence interval.
  *
- * Given is what has passed (mass [kg], say) as a running total over time.  The time during which
- * anything passes is cut into batches of equal length, each with its mean rate.  A window of batches is
- * called steady when
- *   - fitted by a parabola, neither its slope nor its curvature differs from zero at the 5 % level, and
- *   - its first two and last two batches lie within three standard deviations of its mean (a flow that
- *     starts or ends within a batch must not hide in the noise).
- * The longest such window counts, of equal ones that with the least scatter, if it has enough batches and
- * covers enough of the flow.  The batch at either end is dropped: the end of a ramp may hide in its noise.
- * The mean rate comes with a 95 % interval from the batch means and
+ * Given is what has passed (mass [kg], say) as a running total over time.  The time during
+ * which anything passes is cut into batches of equal length, each with its mean rate.  A window
+ * of batches is called steady when
+ *   - fitted by a parabola, neither its slope nor its curvature differs from zero at the 5 %
+ *     level, and
+ *   - its first two and last two batches lie within three standard deviations of its mean (a
+ *     flow that starts or ends within a batch must not hide in the noise).
+ * The longest such window counts, of equal ones that with the least scatter, if it has enough
+ * batches and covers enough of the flow.  The batch at either end is dropped: the end of a ramp
+ * may hide in its noise.  The mean rate comes with a 95 % interval from the batch means and
  * Student's t; where neighbouring batches are still correlated, they are merged in pairs first.
  *
- * Drawbacks: choosing the longest of many windows makes the test a little kinder than 5 %; a slow
- * drift below the noise is not seen.  The interval speaks of this one flow, not of other packings.
+ * Drawbacks: choosing the longest of many windows makes the test a little kinder than 5 %; a
+ * slow drift below the noise is not seen.  The interval speaks of this one flow, not of other
+ * packings.
  */
 #ifndef TREMIE_POSTPROC_STEADY_H
 #define TREMIE_POSTPROC_STEADY_H

@@ -1,11 +1,12 @@
 /*
  * tremie-compare: are two states, or two series, the same to the last bit?
  *
- * Whatever the files hold is compared, field by field: numbers as 64-bit integers, so that -0 is not 0 and
- * a NaN equals itself; a field that only one has, or that has another shape, is a difference.  The
- * distance of two doubles is given in units in the last place (ulp): how many doubles lie between.  Left
- * out are the checksums and descriptions, which follow from the rest, the timings of a series file, and,
- * unless --all is given, the job's text and title (the end of a job, say, may differ).
+ * Whatever the files hold is compared, field by field: numbers as 64-bit integers, so that -0
+ * is not 0 and a NaN equals itself; a field that only one has, or that has another shape, is a
+ * difference.  The distance of two doubles is given in units in the last place (ulp): how many
+ * doubles lie between.  Left out are the checksums and descriptions, which follow from the
+ * rest, the timings of a series file, and, unless --all is given, the job's text and title (the
+ * end of a job, say, may differ).
  */
 #include <inttypes.h>
 #include <math.h>
@@ -50,7 +51,7 @@ struct pair {
     const double *doubles[2]; /* then these */
 };
 
-/* ------------------------------------------------------------------------------------- the numbers */
+/* ------------------------------------------------------------------------------ the numbers */
 
 /* Doubles in their order as integers: neighbours differ by 1, and -0 and 0 too. */
 static int64_t place_of(double value)
@@ -149,7 +150,7 @@ static void compare_pair(struct comparison *comparison, const struct pair *pair,
     sheet_cell(&comparison->summary, "%" PRIu64, farthest);
 }
 
-/* ------------------------------------------------------------------------------------- two files */
+/* -------------------------------------------------------------------------------- two files */
 
 static bool begins(const char *text, const char *with)
 {
@@ -317,7 +318,7 @@ static bool compare_files(struct comparison *comparison, char *const paths[2])
     return read;
 }
 
-/* --------------------------------------------------------------------------------- two runs' series */
+/* ------------------------------------------------------------------------- two runs' series */
 
 static void compare_column(struct comparison *comparison, const struct series series[2],
                            const char *name, int64_t n_rows)
@@ -357,7 +358,7 @@ static bool compare_runs(struct comparison *comparison, char *const paths[2])
     return true;
 }
 
-/* ---------------------------------------------------------------------------------------- the tool */
+/* --------------------------------------------------------------------------------- the tool */
 
 static int conclude(const struct comparison *comparison)
 {

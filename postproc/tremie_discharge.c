@@ -1,8 +1,8 @@
 /*
  * tremie-discharge: what passed through each section of a run, and how steadily.
  *
- * Counts and masses come from the run's own samples, so they are exact; the rate is that of steady.h.
- * Net means forward less backward, forward being along the section's normal.
+ * Counts and masses come from the run's own samples, so they are exact; the rate is that of
+ * steady.h.  Net means forward less backward, forward being along the section's normal.
  */
 #include <math.h>
 #include <stdio.h>
@@ -37,7 +37,7 @@ struct discharge {
     struct section *sections;
 };
 
-/* ----------------------------------------------------------------------------------------- reading */
+/* ---------------------------------------------------------------------------------- reading */
 
 static double at_time(const struct discharge *d, const double *values, double time)
 {
@@ -136,7 +136,7 @@ static void clear(struct discharge *d)
     free(d->time);
 }
 
-/* ----------------------------------------------------------------------------------------- showing */
+/* ---------------------------------------------------------------------------------- showing */
 
 static void print_rows(const struct discharge *d, const struct section *section)
 {

@@ -1,8 +1,9 @@
 /*
- * tremie-info: what a checkpoint, a series file or a run's folder holds, and whether it is whole.
+ * tremie-info: what a checkpoint, a series file or a run's folder holds, and whether it is
+ * whole.
  *
- * A checkpoint is read completely, which verifies all its checksums; so are the checkpoints of a run.
- * Series carry the checksums of HDF5, which reading verifies as well.
+ * A checkpoint is read completely, which verifies all its checksums; so are the checkpoints of
+ * a run.  Series carry the checksums of HDF5, which reading verifies as well.
  */
 #include <inttypes.h>
 #include <math.h>
@@ -23,7 +24,7 @@
 
 static const double PI = 3.14159265358979323846;
 
-/* -------------------------------------------------------------------------------------- checkpoints */
+/* ------------------------------------------------------------------------------ checkpoints */
 
 /* What a set of spheres amounts to. */
 struct census {
@@ -141,7 +142,7 @@ static int show_checkpoint(const struct comm *comm, const char *path, bool liste
     return REPORT_FINISHED;
 }
 
-/* --------------------------------------------------------------------------------------------- files */
+/* ------------------------------------------------------------------------------------ files */
 
 /* Reads an item, which makes HDF5 verify what checksums it has. */
 static bool item_reads(const struct content *content, const struct content_item *item)
@@ -241,7 +242,7 @@ static int show_file(const struct comm *comm, const char *path, bool listed)
     return status;
 }
 
-/* --------------------------------------------------------------------------------------------- runs */
+/* ------------------------------------------------------------------------------------- runs */
 
 static void print_last(const struct series *series)
 {

@@ -1,10 +1,11 @@
 /*
  * tremie-render: a picture of a checkpoint.
  *
- * The spheres are shown as they are, coloured by what is asked for; bodies as panes of glass with dark
- * edges, those towards the viewer fainter so that they hide nothing.  The camera stands where the whole
- * scene fits: the spheres, without the few that flew far off, and the bodies, without planes that
- * are much larger than all the rest.  See canvas.h for how it is drawn.
+ * The spheres are shown as they are, coloured by what is asked for; bodies as panes of glass
+ * with dark edges, those towards the viewer fainter so that they hide nothing.  The camera
+ * stands where the whole scene fits: the spheres, without the few that flew far off, and the
+ * bodies, without planes that are much larger than all the rest.  See canvas.h for how it is
+ * drawn.
  */
 #include <inttypes.h>
 #include <math.h>
@@ -41,7 +42,7 @@ struct wishes {
     double least, most; /* of the colours; not a number: found */
 };
 
-/* ------------------------------------------------------------------------------------- colours */
+/* ---------------------------------------------------------------------------------- colours */
 
 static double value_of(const struct scene *scene, enum colour_by by, int i)
 {
@@ -114,9 +115,10 @@ static int list_names(const struct scene *scene, enum colour_by by, int n_kinds,
     return n_kinds;
 }
 
-/* --------------------------------------------------------------------------------------- the camera */
+/* ------------------------------------------------------------------------------- the camera */
 
-/* The spheres' extent along each axis without outliers: a few that flew off must not shrink the rest. */
+/* The spheres' extent along each axis without outliers: a few that flew off must not shrink the
+ * rest. */
 static void find_extent(const struct spheres *spheres, double least[3], double most[3])
 {
     const int n = spheres->n_owned;
@@ -200,7 +202,7 @@ static struct balls gather_balls(const struct scene *scene, bool no_bodies)
     return balls;
 }
 
-/* ------------------------------------------------------------------------------------------ bodies */
+/* ----------------------------------------------------------------------------------- bodies */
 
 /* Does the plane of the face part the viewer from the middle of the scene? */
 static bool face_is_before(const struct mesh *mesh, int face, struct vec3 eye,
@@ -254,7 +256,7 @@ static void draw_bodies(struct canvas *canvas, const struct camera *camera,
     }
 }
 
-/* ----------------------------------------------------------------------------------------- the picture */
+/* ------------------------------------------------------------------------------ the picture */
 
 static void draw_spheres(struct canvas *canvas, const struct camera *camera,
                          const struct scene *scene, const struct wishes *wishes,
@@ -357,7 +359,7 @@ static int render(const struct scene *scene, const struct wishes *wishes)
     return status;
 }
 
-/* ---------------------------------------------------------------------------------------- the tool */
+/* --------------------------------------------------------------------------------- the tool */
 
 enum { N_VIEWS = 7 };
 static const char *const views[N_VIEWS + 1] = {"corner", "front", "back",   "left",

@@ -1,9 +1,10 @@
 /*
  * tremie-runstats: where the time of a run went, and how runs on several rank counts compare.
  *
- * A run writes one row of timings with each sample: what each phase took since the row before, the
- * least, mean and most over its ranks.  Rows are added up here.  The sum of the ranks' largest times is an
- * upper bound of any rank's total, since another rank may be the slowest in each row.
+ * A run writes one row of timings with each sample: what each phase took since the row before,
+ * the least, mean and most over its ranks.  Rows are added up here.  The sum of the ranks'
+ * largest times is an upper bound of any rank's total, since another rank may be the slowest in
+ * each row.
  */
 #include <math.h>
 #include <stdio.h>
@@ -84,7 +85,7 @@ static int read_stats(struct stats *stats, const char *run)
     return REPORT_FINISHED;
 }
 
-/* ------------------------------------------------------------------------------------- one run */
+/* ---------------------------------------------------------------------------------- one run */
 
 static void write_ranks(char text[NAME_SIZE], const struct stats *stats)
 {
@@ -225,7 +226,7 @@ static void print_stats(const struct stats *stats)
     print_counts(stats);
 }
 
-/* ---------------------------------------------------------------------------------- several runs */
+/* ----------------------------------------------------------------------------- several runs */
 
 static int compare_ranks(const void *a, const void *b)
 {
@@ -282,7 +283,7 @@ static void print_speed_up(int n, struct stats *runs)
     sheet_clear(&sheet);
 }
 
-/* ---------------------------------------------------------------------------------------- the file */
+/* --------------------------------------------------------------------------------- the file */
 
 static const char *const summed[] = {"searches", "prunes", "redistributions", "repartitions",
                                      "migrated"};

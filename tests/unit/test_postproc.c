@@ -1,6 +1,6 @@
 /*
- * What the tools share: finding a steady rate, reading command lines, numbers on axes, cameras, pictures,
- * files' contents.  The tools themselves are tried in tests/cases/postproc.sh.
+ * What the tools share: finding a steady rate, reading command lines, numbers on axes, cameras,
+ * pictures, files' contents.  The tools themselves are tried in tests/cases/postproc.sh.
  */
 #include <math.h>
 #include <png.h>
@@ -23,7 +23,7 @@
 #include "store/file.h"
 #include "store/series.h"
 
-/* ------------------------------------------------------------------------------------------- steady */
+/* ----------------------------------------------------------------------------------- steady */
 
 enum { N_SAMPLES = 401 };
 
@@ -38,7 +38,8 @@ struct flow {
     double time[N_SAMPLES], total[N_SAMPLES];
 };
 
-/* From 0 to 4 s: rises during [0.4, 0.8], stays at 100 until `fall`, then falls for half a second. */
+/* From 0 to 4 s: rises during [0.4, 0.8], stays at 100 until `fall`, then falls for half a
+ * second. */
 static void pour(struct flow *flow, double fall, double drift, double scatter)
 {
     unsigned state = 7;
@@ -119,7 +120,7 @@ TEST(intervals_are_written_to_their_second_digit)
     EXPECT_STRING(text, "1.235 +- 0.012");
 }
 
-/* ------------------------------------------------------------------------------ axes, words, sheets */
+/* ---------------------------------------------------------------------- axes, words, sheets */
 
 TEST(ticks_are_round)
 {
@@ -170,7 +171,7 @@ TEST(sheets_align_their_columns)
     sheet_clear(&sheet);
 }
 
-/* ------------------------------------------------------------------------------------ command lines */
+/* ---------------------------------------------------------------------------- command lines */
 
 static int read_line(int argc, const char *const *words, double *number, const char **name,
                      bool *flag, int *n)
@@ -226,7 +227,7 @@ TEST(wrong_command_lines_are_refused)
     report_init(true);
 }
 
-/* ------------------------------------------------------------------------------------------ pictures */
+/* --------------------------------------------------------------------------------- pictures */
 
 static const struct camera_ball corners[] = {{{-3, -3, 0}, 0.1},
                                              {{3, -3, 0}, 0.0},
@@ -288,7 +289,7 @@ TEST(pictures_show_what_is_nearer)
     canvas_clear(&canvas);
 }
 
-/* --------------------------------------------------------------------------------------------- files */
+/* ------------------------------------------------------------------------------------ files */
 
 /* A run's folder with one segment of two rows; the caller frees the name. */
 static char *make_run(void)

@@ -1,0 +1,189 @@
+#!/bin/bash
+# The tools on small runs: what they show, what they write, what they say of damaged files.
+set -uo pipefail
+
+cd "$(dirname "$0")/../.." || exit 1
+bin=$(cd "$BIN" && pwd)
+python=/usr/bin/python3 # Debian's h5py is for it
+cd "$SCRATCH" || exit 1
+
+# try STATUS COMMAND...: output to `said`; a reason when the status is another.
+try()
+{
+    local expected=$1 status=0
+    shift
+    timeout 120 "$@" > said 2>&1 < /dev/null || status=$?
+    [ "$status" = "$expected" ] || why+=" $(basename "$1") gives status $status, not $expected;"
+}
+
+# says TEXT...: the output holds each of these texts.
+says()
+{
+    local text
+    for text in "$@"; do
+        grep -qF -- "$text" said || why+=" does not say '$text';"
+    done
+}
+
+# result NAME: ok, or FAIL with the reasons.
+result()
+{
+    if [ -z "$why" ]; then
+        echo "ok $1"
+    else
+        echo "FAIL $1:$why"
+        tail -n 15 said
+    fi
+    why=
+}
+
+why=
+cat > small.yaml << 'END'
+title: A small heap
+time: {end: 0.2, step: 2.0e-5}
+gravity: [0, 0, -9.81]
+materials:
+  ore:   {density: 2367, young: 1.0e8, poisson: 0.2}
+  steel: {density: 7860, young: 2.1e8, poisson: 0.29}
+contact:
+  pairs:
+    - {between: [ore, ore], friction: 0.5, restitution: 0.5}
+    - {between: [ore, steel], friction: 0.4, restitution: 0.5}
+spheres:
+  - name: heap
+    material: ore
+    radius: 0.01
+    packing: {kind: lattice, count: 300, spacing: 0.022, corner: [-0.055, -0.055, 0.1], size: [0.11, 0.11]}
+bodies:
+  - {name: bin, material: steel, geometry: {kind: box, open: top, min: [-0.1, -0.1, 0], max: [0.1, 0.1, 0.2]}}
+sections:
+  - {name: middle, point: [0, 0, 0.09], normal: [0, 0, -1]}
+checkpoint: {every: {steps: 5000}, keep: 3}
+output: {series: {every: 0.002}}
+END
+sed '/^sections:/,/middle/d' small.yaml > bare.yaml
+
+try 0 mpirun -n 1 "$bin/tremie" run small.yaml --out one
+try 0 mpirun -n 2 "$bin/tremie" run small.yaml --out two
+try 0 mpirun -n 1 "$bin/tremie" run small.yaml --out duller --set contact.pairs.1.restitution=0.4
+try 0 mpirun -n 1 "$bin/tremie" run bare.yaml --out bare --set time.end=0.002
+result "small runs"
+one=$(find one/checkpoints -name '*.h5' | sort | tail -n 1)
+two=$(find two/checkpoints -name '*.h5' | sort | tail -n 1)
+duller=$(find duller/checkpoints -name '*.h5' | sort | tail -n 1)
+
+# ------------------------------------------------------------------------- command lines
+
+for tool in discharge runstats compare info render; do
+    try 0 "$bin/tremie-$tool" --help
+    says "usage: tremie-$tool" "Exit status"
+    try 2 "$bin/tremie-$tool"
+    says "error: "
+    try 2 "$bin/tremie-$tool" one --no-such-option
+    says "error: there is no option --no-such-option; see tremie-$tool --help"
+done
+for tool in discharge runstats info render; do
+    try 2 "$bin/tremie-$tool" nowhere -o x.png
+    try 2 "$bin/tremie-$tool" nowhere
+    says "error: "
+done
+try 2 "$bin/tremie-render" one
+says "error: there is no name for the picture; give -o FILE.png"
+try 2 "$bin/tremie-render" one -o x.png --size 10x10
+try 2 "$bin/tremie-render" one -o x.png --color mood
+says "choose one of speed, size, material, group, id"
+try 4 "$bin/tremie-render" one -o nowhere/x.png
+says "error: cannot write nowhere/x.png: No such file or directory; check the folder"
+result "command lines"
+
+# ------------------------------------------------------------------------------ discharge
+
+try 0 "$bin/tremie-discharge" one --csv discharge.csv --svg discharge.svg
+says "section middle" "total: " "time [s]"
+grep -qE '^(steady: from|no steady window: )' said || why+=" says nothing of a steady window;"
+total=$(sed -n 's/^total: \([0-9]*\) spheres net.*/\1/p' said)
+[ "${total:-0}" -gt 0 ] || why+=" nothing passed;"
+[ "$(tail -n 1 discharge.csv | cut -d , -f 2)" = "$(tail -n 1 discharge.csv | awk -F , -v t="$total" '{ print t + $3 }')" ] ||
+    why+=" the last line of the CSV has another count;"
+[ "$(wc -l < discharge.csv)" = 102 ] || why+=" $(wc -l < discharge.csv) lines in the CSV, not 102;"
+"$python" -c 'import sys, xml.etree.ElementTree as t; t.parse(sys.argv[1])' discharge.svg 2>> said ||
+    why+=" the SVG is not well-formed;"
+try 1 "$bin/tremie-discharge" bare
+says "has no section"
+result discharge
+
+# ------------------------------------------------------------------------------- runstats
+
+try 0 "$bin/tremie-runstats" two one --csv runstats.csv
+says "rate: " "pairs" "redistribute" "redistributions, high level" "redistributions, low level" "memory" \
+    "speed-up, the run on 1 rank counted as 1" "efficiency"
+[ "$(wc -l < runstats.csv)" = 3 ] || why+=" $(wc -l < runstats.csv) lines in the CSV, not 3;"
+[ "$(awk -F , '{ print NF }' runstats.csv | sort -u | wc -l)" = 1 ] || why+=" lines of unequal length in the CSV;"
+result runstats
+
+# -------------------------------------------------------------------------------- compare
+
+try 0 "$bin/tremie-compare" "$one" "$two"
+says "equal: 0 of"
+try 0 "$bin/tremie-compare" one two
+try 0 "$bin/tremie-compare" "$one" "$two" --all
+try 1 "$bin/tremie-compare" "$one" "$duller"
+says "/spheres/position id " "ulp" "different: "
+try 1 "$bin/tremie-compare" one duller
+try 2 "$bin/tremie-compare" "$one" small.yaml
+says "is not a whole HDF5 file"
+try 2 "$bin/tremie-compare" "$one" two
+cp "$one" changed.h5
+"$python" - << 'END' 2>> said || why+=" cannot change a file;"
+import h5py, numpy
+with h5py.File("changed.h5", "r+") as f:
+    z = f["spheres/position"][17, 2]
+    f["spheres/position"][17, 2] = numpy.nextafter(z, 1)
+    f["spheres/radius"][3] = -0.01
+    f["run"].attrs["title"] = numpy.bytes_("another")
+    del f["spheres/group"]
+END
+try 1 "$bin/tremie-compare" "$one" changed.h5
+says "/spheres/position id 17[2]:" ", 1 ulp" "/spheres/radius id 3: 0.01 and -0.01" \
+    "/spheres/group: only in the first" "different: 3 of"
+try 1 "$bin/tremie-compare" "$one" changed.h5 --all
+says "/run@title: the texts differ" "different: 4 of"
+result compare
+
+# ----------------------------------------------------------------------------------- info
+
+try 0 "$bin/tremie-info" "$one"
+says "A small heap" "300" "all checksums are right" "group heap" "body bin"
+try 0 "$bin/tremie-info" one
+says "checkpoints " "all checksums are right" "kinetic_translation" "middle.mass_forward"
+try 0 "$bin/tremie-info" "$(find one/series -name '*.h5' | sort | head -n 1)"
+says "/series/time" "/runtime/wall"
+try 4 "$bin/tremie-info" changed.h5
+says "error: "
+head -c 20000 "$one" > cut.h5
+try 4 "$bin/tremie-info" cut.h5
+says "error: "
+try 2 "$bin/tremie-info" /
+try 4 "$bin/tremie-info" small.yaml
+result info
+
+# --------------------------------------------------------------------------------- render
+
+# size_of FILE.png: width and height
+size_of()
+{
+    od -An -t u1 -j 16 -N 8 "$1" | awk '{ print $3 * 256 + $4 "x" $7 * 256 + $8 }'
+}
+
+for by in speed size material group id; do
+    try 0 "$bin/tremie-render" "$one" -o "$by.png" --color "$by" --size 320x240
+    [ "$(size_of "$by.png")" = 320x240 ] || why+=" $by.png is $(size_of "$by.png");"
+done
+for view in corner front back left right top bottom; do
+    try 0 "$bin/tremie-render" one --out "$view.png" --view "$view" --size 160x120 --no-bodies
+done
+cmp -s front.png top.png && why+=" another view shows the same;"
+try 0 "$bin/tremie-render" one -o near.png --azimuth 40 --elevation 30 --zoom 2 --range 0:1 --size 320x240
+try 4 "$bin/tremie-render" cut.h5 -o cut.png
+[ ! -e cut.png ] || why+=" a picture of a damaged file;"
+result render
