@@ -44,6 +44,8 @@ void report_log_close(void)
 }
 
 static void log_line(const char *label, const char *format, va_list arguments)
+    __attribute__((format(printf, 2, 0)));
+static void log_line(const char *label, const char *format, va_list arguments)
 {
     if (report_log == NULL)
         return;
@@ -65,6 +67,8 @@ static void line_finish(void)
     report_line_open = false;
 }
 
+static void speak(FILE *stream, const char *label, const char *format, va_list arguments)
+    __attribute__((format(printf, 3, 0)));
 static void speak(FILE *stream, const char *label, const char *format, va_list arguments)
 {
     if (!report_speaks)

@@ -651,6 +651,7 @@ static void default_read(struct item *item)
         item->node = tree.root;
     }
     value_read(item);
+    item->node = NULL;
     yaml_tree_clear(&tree);
 }
 
@@ -787,7 +788,7 @@ void schema_clear(const struct schema_key *table, void *from)
             key->type == SCHEMA_FILE || key->type == SCHEMA_POINTS ||
             key->type == SCHEMA_FACETS) {
             free(*(void **)place);
-            memset(place, 0, sizeof(void *));
+            *(void **)place = NULL;
         }
     }
 }

@@ -127,11 +127,11 @@ const struct yaml_tree_node *yaml_tree_nearest(const struct yaml_tree_node *root
 const char *yaml_tree_shown(char shown[YAML_TREE_SHOWN], const char *text)
 {
     size_t n = 0;
-    for (; text[n] != '\0' && n < YAML_TREE_SHOWN - 4; n++)
+    for (; n < YAML_TREE_SHOWN - 4 && text[n] != '\0'; n++)
         shown[n] = (unsigned char)text[n] < ' ' || text[n] == 127 ? '?' : text[n];
     while (text[n] != '\0' && n > 0 && (text[n] & 0xc0) == 0x80)
         n--; /* not in the middle of a UTF-8 character */
-    strcpy(shown + n, text[n] != '\0' ? "..." : "");
+    snprintf(shown + n, YAML_TREE_SHOWN - n, "%s", text[n] != '\0' ? "..." : "");
     return shown;
 }
 
