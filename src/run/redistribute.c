@@ -1,7 +1,8 @@
 /*
- * See redistribute.h.  Allowances: a sphere may go s = max(half buffer, 1.3 |v| K dt) before a search is due,
- * at most a few radii; the inner list has its own, much smaller ones.  The sum over steps of the
- * largest |v|/s dt bounds what has been used; when it exceeds 1 the exact largest |x - x_search|/s decides.
+ * See redistribute.h.  Allowances: a sphere may go s = max(half buffer, 1.3 |v| K dt) before a
+ * search is due, at most a few radii; the inner list has its own, much smaller ones.  The sum
+ * over steps of the largest |v|/s dt bounds what has been used; when it exceeds 1 the exact
+ * largest |x - x_search|/s decides.
  */
 #include "run/redistribute.h"
 
@@ -9,6 +10,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "base/report.h"
 #include "domain/rcb.h"
 #include "job/job.h"
 #include "model/order.h"
@@ -30,7 +32,8 @@ static bool is_multiple(int64_t step, int64_t every)
 bool redistribute_is_due(const struct simulation *sim)
 {
     const struct job *job = sim->job;
-    return sim->spent.forced || !(sim->spent.search <= 1.0) || is_multiple(sim->step, job->order_every) ||
+    return sim->spent.forced || !(sim->spent.search <= 1.0) ||
+           is_multiple(sim->step, job->order_every) ||
            is_multiple(sim->step, job->force.search_every) ||
            is_multiple(sim->step, job->force.redistribute_every) ||
            is_multiple(sim->step, job->force.repartition_every);
@@ -78,8 +81,9 @@ static double bodies_spend(const struct simulation *sim)
 static void prune(struct simulation *sim, const int *moved)
 {
     const double least = INNER_LEAST * 4.0 * sim->half_buffer;
-    contact_set_prune(&sim->contacts, &sim->candidates, &sim->spheres, least, INNER_STEPS * sim->dt,
-                      sim->job->force.search == JOB_SEARCH_ALL_PAIRS, moved);
+    contact_set_prune(&sim->contacts, &sim->candidates, &sim->spheres, least,
+                      INNER_STEPS * sim->dt, sim->job->force.search == JOB_SEARCH_ALL_PAIRS,
+                      moved);
     sim->spent.inner = 0.0;
     sim->runtime.prunes++;
 }
@@ -107,15 +111,19 @@ static bool has_fixed_grid(const struct simulation *sim)
     return sim->job->decomposition.fixed[0] > 0;
 }
 
-/* History of contacts that came with spheres from other ranks or from a file. */
-static void restore_arrivals(struct simulation *sim)
+/* History of contacts that came with spheres from other ranks or from a file.  Where spheres
+ * left the run, contacts with them end; their partner's rank cannot always know that before. */
+static void restore_arrivals(struct simulation *sim, bool some_left_run)
 {
     struct migrate *migrate = &sim->migrate;
     for (int r = 0; r < migrate->n_contacts; r++) {
         const struct contact_record *record = &migrate->contacts[r];
-        contact_set_restore(&sim->contacts, &sim->candidates, record,
-                            lookup_find(&migrate->lookup, record->first_id),
-                            lookup_find(&migrate->lookup, record->second_id));
+        const int first = lookup_find(&migrate->lookup, record->first_id);
+        const int second = lookup_find(&migrate->lookup, record->second_id);
+        if (some_left_run && (first < 0 || second < 0))
+            continue;
+        CHECK(first >= 0 && second >= 0, "a contact of a sphere that is not here");
+        contact_set_restore(&sim->contacts, &sim->candidates, record, first, second);
     }
     migrate->n_contacts = 0;
 }
@@ -134,7 +142,7 @@ static void restore_facets(struct simulation *sim)
 }
 
 /* Global search with the present owners and ghosts; moved as for contact_set_prune(). */
-static void search(struct simulation *sim, const int *moved)
+static void search(struct simulation *sim, const int *moved, bool some_left_run)
 {
     struct spheres *spheres = &sim->spheres;
     const bool all_pairs = sim->job->force.search == JOB_SEARCH_ALL_PAIRS;
@@ -142,7 +150,7 @@ static void search(struct simulation *sim, const int *moved)
     candidates_search(&sim->candidates, spheres, all_pairs);
     prune(sim, moved);
     if (moved != NULL)
-        restore_arrivals(sim);
+        restore_arrivals(sim, some_left_run);
     facet_contacts_search(&sim->facets, spheres, &sim->bodies, sim->body_allowance, all_pairs);
     sections_search(&sim->sections, spheres);
     for (int i = 0; i < spheres->n_owned; i++) {
@@ -154,13 +162,13 @@ static void search(struct simulation *sim, const int *moved)
 }
 
 /* The high level: spheres that crossed move, copies are made anew. */
-static void update_subdomains(struct simulation *sim, bool moves, bool sort_all, const unsigned char *removed,
-                              const struct contact_set *contacts)
+static void update_subdomains(struct simulation *sim, bool moves, bool sort_all,
+                              const unsigned char *removed, const struct contact_set *contacts)
 {
     struct spheres *spheres = &sim->spheres;
     if (moves) {
-        migrate_spheres(&sim->migrate, sim->comm, &sim->boxes, spheres, contacts, &sim->facets, &sim->materials,
-                        removed, sort_all);
+        migrate_spheres(&sim->migrate, sim->comm, &sim->boxes, spheres, contacts, &sim->facets,
+                        &sim->materials, removed, sort_all);
         sim->runtime.migrated += sim->migrate.n_left;
         sim->runtime.redistributions++;
     }
@@ -187,7 +195,7 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
     const bool moves = sim->comm->n_ranks > 1 || renew || removed != NULL;
     update_subdomains(sim, moves, renew, removed, &sim->contacts);
     runtime_end(&sim->runtime, RUNTIME_REDISTRIBUTE);
-    search(sim, moves ? sim->migrate.moved : NULL);
+    search(sim, moves ? sim->migrate.moved : NULL, removed != NULL);
     runtime_end(&sim->runtime, RUNTIME_SEARCH);
 }
 
@@ -195,12 +203,13 @@ void redistribute_first(struct simulation *sim)
 {
     choose_body_allowances(sim);
     if (has_fixed_grid(sim))
-        boxes_set_grid(&sim->boxes, sim->job->decomposition.fixed, sim->job->domain.min, sim->job->domain.max);
+        boxes_set_grid(&sim->boxes, sim->job->decomposition.fixed, sim->job->domain.min,
+                       sim->job->domain.max);
     else
         repartition(sim);
     boxes_update(&sim->boxes);
     update_subdomains(sim, true, true, NULL, NULL);
-    search(sim, sim->migrate.moved);
+    search(sim, sim->migrate.moved, false);
 }
 
 void redistribute_spend(struct simulation *sim, const double spent[2])
