@@ -1,7 +1,7 @@
 /*
- * See integrate.h.  Rows are worked on as pairs of lanes, which every x86-64 has.  What is spent of the
- * allowances is gathered by component, whose norm bounds the largest |v| / allowance and needs no square
- * root a sphere.
+ * See integrate.h.  Rows are worked on as pairs of lanes, which every x86-64 has.  What is
+ * spent of the allowances is gathered by component, whose norm bounds the largest |v| /
+ * allowance and needs no square root a sphere.
  */
 #include "physics/integrate.h"
 
@@ -38,8 +38,8 @@ static inline void gather_spent(struct spent *spent, two v_xy, two v_z, const do
 }
 
 /* What mass-proportional damping takes in a step: c m v(n)^2 dt [J]. */
-static double background_loss(const struct integrate_work *work, const double *before, const double *after,
-                              double inverse_mass)
+static double background_loss(const struct integrate_work *work, const double *before,
+                              const double *after, double inverse_mass)
 {
     double speed2 = 0.0;
     for (int k = 0; k < 3; k++) {
@@ -50,19 +50,25 @@ static double background_loss(const struct integrate_work *work, const double *b
 }
 
 /* The two factors of v(n+1/2) = keep v(n-1/2) + push a(n) dt under mass-proportional damping c:
- * (1 - c dt/2)/(1 + c dt/2) and 1/(1 + c dt/2).                                                 (5.3) */
-static inline __attribute__((always_inline)) void
-move_spheres(struct integrate_work *work, struct spent *spent, double keep, double push, bool ledger, bool damped)
+ * (1 - c dt/2)/(1 + c dt/2) and 1/(1 + c dt/2).
+ * (5.3) */
+static inline __attribute__((always_inline)) void move_spheres(struct integrate_work *work,
+                                                               struct spent *spent, double keep,
+                                                               double push, bool ledger,
+                                                               bool damped)
 {
     const double dt = work->dt, kick = push * dt;
-    const two fall_xy = {kick * work->gravity[0], kick * work->gravity[1]}, fall_z = {kick * work->gravity[2], 0.0};
+    const two fall_xy = {kick * work->gravity[0], kick * work->gravity[1]},
+              fall_z = {kick * work->gravity[2], 0.0};
     const two first = {1.0, 0.0}, keep_z = {keep, 1.0}, step_z = {dt, 0.0}, zero = {0.0, 0.0};
     for (int i = 0; i < work->n; i++) {
         two *motion = (two *)(void *)&work->motion[i], *spin = (two *)(void *)&work->spin[i];
         two *force = (two *)(void *)&work->force[i];
-        const double radius = motion[1][1], inverse_mass = spin[3][1], inverse_radius = spin[1][1];
+        const double radius = motion[1][1], inverse_mass = spin[3][1],
+                     inverse_radius = spin[1][1];
         const double gain = kick * inverse_mass;
-        /* Inertia of a sphere 2/5 m R^2.                                                        (5.2) */
+        /* Inertia of a sphere 2/5 m R^2.
+         * (5.2) */
         const double turn = kick * 2.5 * inverse_mass * inverse_radius * inverse_radius;
         const two v_xy = motion[2] * keep + force[0] * gain + fall_xy;
         const two v_z = motion[3] * keep_z + force[1] * (first * gain) + fall_z;

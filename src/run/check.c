@@ -45,9 +45,11 @@ static struct group_summary summarise(const struct job *job, const struct packin
     struct group_summary summary = {packing->n, 0.0, 1e300, 0.0, extent_nothing()};
     for (int64_t k = 0; k < packing->n; k++) {
         const struct packing_sphere s = packing_get(packing, k);
-        const double volume = 4.0 / 3.0 * 3.14159265358979323846 * s.radius * s.radius * s.radius;
+        const double volume =
+            4.0 / 3.0 * 3.14159265358979323846 * s.radius * s.radius * s.radius;
         summary.mass += volume * job->materials[s.material].density;
-        summary.radius_least = s.radius < summary.radius_least ? s.radius : summary.radius_least;
+        summary.radius_least =
+            s.radius < summary.radius_least ? s.radius : summary.radius_least;
         summary.radius_most = s.radius > summary.radius_most ? s.radius : summary.radius_most;
         extent_add(&summary.extent, s.position, s.radius);
     }
@@ -108,11 +110,14 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
         packing_close(&packing);
     }
     if (n_spheres > INT64_C(2000000000))
-        mistakes_add(mistakes, job->path, 0, 0, "%lld spheres; at most 2e9 are expected", (long long)n_spheres);
+        mistakes_add(mistakes, job->path, 0, 0, "%lld spheres; at most 2e9 are expected",
+                     (long long)n_spheres);
     if (grid[0] > 0 && grid[0] * grid[1] * grid[2] != n_ranks)
-        mistakes_add(mistakes, job->path, 0, 0,
-                     "decomposition.grid is %d x %d x %d on %d ranks; a product equal to the ranks is expected",
-                     grid[0], grid[1], grid[2], n_ranks);
+        mistakes_add(
+            mistakes, job->path, 0, 0,
+            "decomposition.grid is %d x %d x %d on %d ranks; a product equal to the ranks is "
+            "expected",
+            grid[0], grid[1], grid[2], n_ranks);
     if (mistakes->n > 0)
         return false;
     struct bodies bodies;
@@ -125,24 +130,29 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
     return true;
 }
 
-/* ------------------------------------------------------------------------------- tremie check */
+/* ------------------------------------------------------------------------------- tremie
+ * check */
 
 static void print_extent(const char *label, const struct extent *e)
 {
-    report_say("%s x %.4g .. %.4g, y %.4g .. %.4g, z %.4g .. %.4g m", label, e->low.x, e->high.x, e->low.y,
-               e->high.y, e->low.z, e->high.z);
+    report_say("%s x %.4g .. %.4g, y %.4g .. %.4g, z %.4g .. %.4g m", label, e->low.x,
+               e->high.x, e->low.y, e->high.y, e->low.z, e->high.z);
 }
 
 /* Steps that an impact of two such spheres at this speed lasts. */
-static double steps_per_contact(const struct job *job, const struct job_spheres *group, double radius, double speed)
+static double steps_per_contact(const struct job *job, const struct job_spheres *group,
+                                double radius, double speed)
 {
     const struct job_material *m = &job->materials[group->material];
-    const double mass = m->density * 4.0 / 3.0 * 3.14159265358979323846 * radius * radius * radius;
+    const double mass =
+        m->density * 4.0 / 3.0 * 3.14159265358979323846 * radius * radius * radius;
     const double young = m->young / (2.0 * (1.0 - m->poisson * m->poisson));
-    return critical_step_hertz_duration(0.5 * mass, 0.5 * radius, young, speed) / job->time.step;
+    return critical_step_hertz_duration(0.5 * mass, 0.5 * radius, young, speed) /
+           job->time.step;
 }
 
-static void print_group(const struct job *job, int g, struct extent *scene, int64_t *n, double *speed)
+static void print_group(const struct job *job, int g, struct extent *scene, int64_t *n,
+                        double *speed)
 {
     struct packing packing;
     char *why = NULL;
@@ -154,19 +164,26 @@ static void print_group(const struct job *job, int g, struct extent *scene, int6
     *n += s.n;
     extent_add(scene, s.extent.low, 0.0);
     extent_add(scene, s.extent.high, 0.0);
-    report_say("spheres  %s: %lld of %s, radius %.4g .. %.4g m, mass %.4g kg", group->name, (long long)s.n, m->name,
-               s.radius_least, s.radius_most, s.mass);
+    report_say("spheres  %s: %lld of %s, radius %.4g .. %.4g m, mass %.4g kg", group->name,
+               (long long)s.n, m->name, s.radius_least, s.radius_most, s.mass);
     print_extent("         ", &s.extent);
-    const double rayleigh = critical_step_rayleigh(s.radius_least, m->density, m->young, m->poisson);
+    const double rayleigh =
+        critical_step_rayleigh(s.radius_least, m->density, m->young, m->poisson);
     const double contact = steps_per_contact(job, group, s.radius_least, *speed);
-    report_say("         Rayleigh step %.4g s: the step is %.3g of it; an impact at %.3g m/s lasts %.3g steps", rayleigh,
-               job->time.step / rayleigh, *speed, contact);
+    report_say(
+        "         Rayleigh step %.4g s: the step is %.3g of it; an impact at %.3g m/s lasts "
+        "%.3g steps",
+        rayleigh, job->time.step / rayleigh, *speed, contact);
     if (job->time.step > 0.4 * rayleigh)
-        report_warn("time.step is %.3g of the Rayleigh step of '%s'; runs beyond 0.4 are likely to be unstable",
-                    job->time.step / rayleigh, group->name);
+        report_warn(
+            "time.step is %.3g of the Rayleigh step of '%s'; runs beyond 0.4 are likely to be "
+            "unstable",
+            job->time.step / rayleigh, group->name);
     else if (contact < 20.0)
-        report_warn("impacts of '%s' at %.3g m/s last %.3g steps; below 20, restitution scatters by over 0.013",
-                    group->name, *speed, contact);
+        report_warn(
+            "impacts of '%s' at %.3g m/s last %.3g steps; below 20, restitution scatters by "
+            "over 0.013",
+            group->name, *speed, contact);
 }
 
 static void print_bodies(const struct job *job, struct extent *scene)
@@ -178,8 +195,9 @@ static void print_bodies(const struct job *job, struct extent *scene)
         const struct body *body = &bodies.list[b];
         for (int v = 0; v < body->mesh.n_vertices; v++)
             extent_add(&extent, body->mesh.reference[v], 0.0);
-        report_say("body     %s: rigid, %s, %d facets%s", body->name, job->materials[body->material].name,
-                   body->mesh.n_faces, body->moves ? ", moves as prescribed" : "");
+        report_say("body     %s: rigid, %s, %d facets%s", body->name,
+                   job->materials[body->material].name, body->mesh.n_faces,
+                   body->moves ? ", moves as prescribed" : "");
         print_extent("         ", &extent);
     }
     add_bodies(&bodies, scene);
@@ -193,7 +211,8 @@ void check_print(const struct job *job, int n_ranks)
     int64_t n = 0;
     const double g = vec3_norm(job->gravity), n_steps = job->time.end / job->time.step;
     report_say("job      %s: %s", job->path, job->title);
-    report_say("time     %.6g s in %.0f steps of %.6g s", job->time.end, n_steps, job->time.step);
+    report_say("time     %.6g s in %.0f steps of %.6g s", job->time.end, n_steps,
+               job->time.step);
     /* A guess at impact speeds: a fall of two metres, or what is given. */
     double speed = g > 0.0 ? 6.3 : 1.0;
     for (int k = 0; k < job->n_spheres; k++) {
@@ -209,9 +228,12 @@ void check_print(const struct job *job, int n_ranks)
     for (int s = 0; s < job->n_sections; s++)
         report_say("section  %s", job->sections[s].name);
     const double particle_steps = (double)n * n_steps;
-    report_say("cost     %.3g particle-steps: of the order of %.3g s on %d rank%s; memory of the order of %.3g MB",
-               particle_steps, particle_steps * NANOSECONDS_A_STEP * 1e-9 / n_ranks, n_ranks, n_ranks == 1 ? "" : "s",
-               (double)n * BYTES_A_SPHERE * 1e-6);
+    report_say(
+        "cost     %.3g particle-steps: of the order of %.3g s on %d rank%s; memory of the "
+        "order of %.3g MB",
+        particle_steps, particle_steps * NANOSECONDS_A_STEP * 1e-9 / n_ranks, n_ranks,
+        n_ranks == 1 ? "" : "s", (double)n * BYTES_A_SPHERE * 1e-6);
     if (n < 500 * (int64_t)n_ranks && n_ranks > 1)
-        report_warn("%lld spheres on %d ranks: fewer ranks would be faster", (long long)n, n_ranks);
+        report_warn("%lld spheres on %d ranks: fewer ranks would be faster", (long long)n,
+                    n_ranks);
 }

@@ -1,5 +1,6 @@
 /*
- * What can be known of a job before it runs: the scene, critical steps, cost, and what looks wrong.
+ * What can be known of a job before it runs: the scene, critical steps, cost, and what looks
+ * wrong.
  */
 #ifndef TREMIE_RUN_CHECK_H
 #define TREMIE_RUN_CHECK_H
@@ -9,11 +10,12 @@
 struct job;
 struct mistakes;
 
-/* Fills in what only the scene tells (the domain, the automatic step) and lists mistakes that only the
- * scene shows.  Local, on the rank that read the job. */
+/* Fills in what only the scene tells (the domain, the automatic step) and lists mistakes that
+ * only the scene shows.  Local, on the rank that read the job. */
 bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes);
 
-/* `tremie check`: prints the scene, critical steps, cost estimate and warnings.  Speaks on one rank. */
+/* `tremie check`: prints the scene, critical steps, cost estimate and warnings.  Speaks on one
+ * rank. */
 void check_print(const struct job *job, int n_ranks);
 
 #endif

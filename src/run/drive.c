@@ -1,6 +1,7 @@
 /*
- * See drive.h.  The loop steps, saves when a checkpoint is due, shows progress, and ends for one of
- * four reasons: the end is reached, somebody asked to stop, something failed, the disk does not take it.
+ * See drive.h.  The loop steps, saves when a checkpoint is due, shows progress, and ends for
+ * one of four reasons: the end is reached, somebody asked to stop, something failed, the disk
+ * does not take it.
  */
 #include "run/drive.h"
 
@@ -55,7 +56,8 @@ static int open_folder(struct drive *drive)
         char *path = drive->options->out != NULL ? array_string(drive->options->out)
                                                  : array_format("runs/%s", drive->job->name);
         bool resumes = false;
-        words[0] = run_folder_open(&drive->folder, path, drive->job_text, drive->options->fresh, &resumes);
+        words[0] = run_folder_open(&drive->folder, path, drive->job_text, drive->options->fresh,
+                                   &resumes);
         words[1] = resumes;
         if (words[0] == REPORT_FINISHED) {
             char *log = array_format("%s/log", path);
@@ -77,8 +79,8 @@ static void describe_run(const struct drive *drive)
 {
     char host[128] = "";
     (void)gethostname(host, sizeof host - 1);
-    report_note("tremie %s, %d ranks, first on %s, kernel %s", TREMIE_VERSION, drive->comm->n_ranks, host,
-                pair_kernel_isa_name(drive->sim.kernel.isa));
+    report_note("tremie %s, %d ranks, first on %s, kernel %s", TREMIE_VERSION,
+                drive->comm->n_ranks, host, pair_kernel_isa_name(drive->sim.kernel.isa));
 }
 
 /* Tries one checkpoint; the path is rank 0's. */
@@ -88,10 +90,12 @@ static int try_checkpoint(struct drive *drive, const char *path)
     if (drive->comm->rank == 0)
         snprintf(shared, sizeof shared, "%s", path);
     comm_broadcast(drive->comm, shared, sizeof shared);
-    return simulation_restart(&drive->sim, drive->comm, drive->job, drive->options->isa, shared);
+    return simulation_restart(&drive->sim, drive->comm, drive->job, drive->options->isa,
+                              shared);
 }
 
-/* Resumes from the newest checkpoint that reads back well; *found tells whether there was any. */
+/* Resumes from the newest checkpoint that reads back well; *found tells whether there was
+ * any. */
 static int resume(struct drive *drive, bool *found)
 {
     int64_t *steps = NULL;
@@ -100,7 +104,9 @@ static int resume(struct drive *drive, bool *found)
     int status = REPORT_FINISHED;
     *found = false;
     for (int64_t k = 0; k < n && !*found; k++) {
-        char *path = drive->comm->rank == 0 ? run_folder_checkpoint_path(&drive->folder, steps[k]) : NULL;
+        char *path = drive->comm->rank == 0
+                         ? run_folder_checkpoint_path(&drive->folder, steps[k])
+                         : NULL;
         status = try_checkpoint(drive, path);
         *found = status == REPORT_FINISHED;
         if (!*found && k + 1 < n)
@@ -109,7 +115,8 @@ static int resume(struct drive *drive, bool *found)
     }
     free(steps);
     if (n > 0 && !*found)
-        report_error("none of the %lld checkpoints can be used; start over with --fresh", (long long)n);
+        report_error("none of the %lld checkpoints can be used; start over with --fresh",
+                     (long long)n);
     return *found || n == 0 ? REPORT_FINISHED : status;
 }
 
@@ -130,13 +137,15 @@ static int prepare(struct drive *drive)
         simulation_create(&drive->sim, drive->comm, drive->job, drive->options->isa);
     describe_run(drive);
     if (found)
-        report_say("resumes at step %lld (%.6g s)", (long long)drive->sim.step, (double)drive->sim.step * drive->sim.dt);
+        report_say("resumes at step %lld (%.6g s)", (long long)drive->sim.step,
+                   (double)drive->sim.step * drive->sim.dt);
     if (drive->comm->rank == 0)
         status = run_folder_rewind(&drive->folder, drive->sim.step);
     return comm_agree(drive->comm, status);
 }
 
-/* ------------------------------------------------------------------------------------ chores */
+/* ------------------------------------------------------------------------------------
+ * chores */
 
 static void format_duration(char *text, size_t size, double seconds)
 {
@@ -147,14 +156,16 @@ static void format_duration(char *text, size_t size, double seconds)
         snprintf(text, size, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
 }
 
-static void write_status(const struct drive *drive, const char *state, double rate, const char *left)
+static void write_status(const struct drive *drive, const char *state, double rate,
+                         const char *left)
 {
     const struct simulation *sim = &drive->sim;
-    char *text = array_format("state: %s\nstep: %lld of %lld\ntime: %.6g of %.6g s\nspheres: %lld\n"
-                              "rate: %.3g million particle-steps/s on %d ranks\nremaining: %s\n",
-                              state, (long long)sim->step, (long long)sim->n_steps, (double)sim->step * sim->dt,
-                              (double)sim->n_steps * sim->dt, (long long)sim->n_spheres, rate * 1e-6,
-                              drive->comm->n_ranks, left);
+    char *text =
+        array_format("state: %s\nstep: %lld of %lld\ntime: %.6g of %.6g s\nspheres: %lld\n"
+                     "rate: %.3g million particle-steps/s on %d ranks\nremaining: %s\n",
+                     state, (long long)sim->step, (long long)sim->n_steps,
+                     (double)sim->step * sim->dt, (double)sim->n_steps * sim->dt,
+                     (long long)sim->n_spheres, rate * 1e-6, drive->comm->n_ranks, left);
     run_folder_status(&drive->folder, text);
     free(text);
 }
@@ -175,10 +186,12 @@ static void do_chores(struct drive *drive)
     const bool keep = now >= drive->line_at;
     if (keep)
         drive->line_at = now + LINES_EVERY;
-    report_progress(keep && !isatty(STDERR_FILENO),
-                    "step %lld of %lld, %.4g s, %.3g million particle-steps/s, overlap %.2g, imbalance %.2f, %s left",
-                    (long long)sim->step, (long long)sim->n_steps, (double)sim->step * sim->dt, rate * 1e-6,
-                    sim->watch.overlap, sim->balance.imbalance > 0.0 ? sim->balance.imbalance : 1.0, left);
+    report_progress(
+        keep && !isatty(STDERR_FILENO),
+        "step %lld of %lld, %.4g s, %.3g million particle-steps/s, overlap %.2g, imbalance "
+        "%.2f, %s left",
+        (long long)sim->step, (long long)sim->n_steps, (double)sim->step * sim->dt, rate * 1e-6,
+        sim->watch.overlap, sim->balance.imbalance > 0.0 ? sim->balance.imbalance : 1.0, left);
     write_status(drive, "running", rate, left);
     if (access(drive->stop_path, F_OK) == 0)
         sim->watch.stop_asked = true; /* collective with the next step's reduction */
@@ -202,9 +215,11 @@ static int save(struct drive *drive)
         report_note("checkpoint at step %lld (%.6g s)", (long long)drive->sim.step,
                     (double)drive->sim.step * drive->sim.dt);
     else
-        report_error("the checkpoint of step %lld could not be written; the one before stands, make room and "
-                     "give the same command again",
-                     (long long)drive->sim.step);
+        report_error(
+            "the checkpoint of step %lld could not be written; the one before stands, make "
+            "room and "
+            "give the same command again",
+            (long long)drive->sim.step);
     return status;
 }
 
@@ -213,7 +228,8 @@ static int loop(struct drive *drive)
     struct simulation *sim = &drive->sim;
     int64_t saved_at = sim->step > 0 ? sim->step : -1;
     int status = REPORT_FINISHED;
-    while (sim->step < sim->n_steps && !sim->watch.stop_agreed && sim->watch.failure == WATCH_FINE) {
+    while (sim->step < sim->n_steps && !sim->watch.stop_agreed &&
+           sim->watch.failure == WATCH_FINE) {
         step(sim);
         do_chores(drive);
         if (sim->watch.failure == WATCH_FINE && checkpoint_is_due(drive)) {
@@ -237,7 +253,8 @@ static int finish_series(struct drive *drive)
 {
     struct simulation *sim = &drive->sim;
     step_forces(sim);
-    sim->step++; /* the segment is named after the step that would be next; a longer run replaces it */
+    /* The segment is named after the step that would be next; a longer run replaces it. */
+    sim->step++;
     const int status = simulation_save_series(sim, &drive->folder);
     sim->step--;
     return status;
@@ -256,11 +273,11 @@ static int finish(struct drive *drive, int status)
     format_duration(took, sizeof took, elapsed);
     const double rate = elapsed > 0.0 ? done * (double)sim->n_spheres / elapsed : 0.0;
     if (status == REPORT_FINISHED)
-        report_say("finished at step %lld (%.6g s) after %s: %.3g million particle-steps/s", (long long)sim->step,
-                   (double)sim->step * sim->dt, took, rate * 1e-6);
+        report_say("finished at step %lld (%.6g s) after %s: %.3g million particle-steps/s",
+                   (long long)sim->step, (double)sim->step * sim->dt, took, rate * 1e-6);
     else if (status == REPORT_STOPPED)
-        report_say("stopped with a checkpoint at step %lld of %lld; the same command resumes", (long long)sim->step,
-                   (long long)sim->n_steps);
+        report_say("stopped with a checkpoint at step %lld of %lld; the same command resumes",
+                   (long long)sim->step, (long long)sim->n_steps);
     if (drive->comm->rank == 0)
         write_status(drive,
                      status == REPORT_FINISHED  ? "finished"
@@ -270,7 +287,8 @@ static int finish(struct drive *drive, int status)
     return status;
 }
 
-int drive_run(const struct comm *comm, const struct options *options, const struct job *job, const char *job_text)
+int drive_run(const struct comm *comm, const struct options *options, const struct job *job,
+              const char *job_text)
 {
     struct drive drive = {.comm = comm, .options = options, .job = job, .job_text = job_text};
     int status = open_folder(&drive);
@@ -296,7 +314,8 @@ int drive_run(const struct comm *comm, const struct options *options, const stru
     return status;
 }
 
-/* ------------------------------------------------------------------------------- from outside */
+/* ------------------------------------------------------------------------------- from
+ * outside */
 
 int drive_status(const char *run)
 {
@@ -318,7 +337,9 @@ int drive_stop(const char *run)
     char *status = array_format("%s/status", run), *stop = array_format("%s/stop", run);
     int result = REPORT_FINISHED;
     if (access(status, F_OK) != 0) {
-        report_error("%s is not a run's folder, or its run has not begun; name the folder of a run", run);
+        report_error(
+            "%s is not a run's folder, or its run has not begun; name the folder of a run",
+            run);
         result = REPORT_BAD_INPUT;
     } else {
         result = run_folder_write_file(stop, "stop\n");

@@ -1,8 +1,9 @@
 /*
  * The program: `tremie run JOB` and what goes with it.
  *
- * One rank reads the job and holds the run folder; what it decides is broadcast.  The same command again
- * resumes from the newest good checkpoint.  Exit statuses are those of base/report.h.
+ * One rank reads the job and holds the run folder; what it decides is broadcast.  The same
+ * command again resumes from the newest good checkpoint.  Exit statuses are those of
+ * base/report.h.
  */
 #include <mpi.h>
 #include <stdio.h>
@@ -34,19 +35,23 @@ static const char USAGE[] =
     "  --fresh                   start over; what is there is set aside\n"
     "  --restart FILE            start from this checkpoint\n"
     "  --isa NAME                pair kernel: auto, generic, v2, v3 or v4\n"
-    "exit status: 0 finished; 2 bad input; 3 unstable; 4 disk or file; 75 stopped with a checkpoint;\n"
+    "exit status: 0 finished; 2 bad input; 3 unstable; 4 disk or file; 75 stopped with a "
+    "checkpoint;\n"
     "other: a bug in tremie\n";
 
-/* Reads the job on rank 0; everybody gets its complete text.  Returns a REPORT_ status.  Collective. */
-static int read_job(const struct comm *comm, const struct options *options, struct job *job, char **text)
+/* Reads the job on rank 0; everybody gets its complete text.  Returns a REPORT_ status.
+ * Collective. */
+static int read_job(const struct comm *comm, const struct options *options, struct job *job,
+                    char **text)
 {
     struct mistakes mistakes;
     mistakes_init(&mistakes);
     int64_t size = 0;
     bool fine = true;
     if (comm->rank == 0) {
-        fine = job_read(job, options->job, options->n_overrides, options->overrides, &mistakes) &&
-               check_complete(job, comm->n_ranks, &mistakes);
+        fine =
+            job_read(job, options->job, options->n_overrides, options->overrides, &mistakes) &&
+            check_complete(job, comm->n_ranks, &mistakes);
         mistakes_print(&mistakes);
         *text = fine ? job_write(job) : NULL;
         size = fine ? (int64_t)strlen(*text) + 1 : 0;
@@ -55,7 +60,8 @@ static int read_job(const struct comm *comm, const struct options *options, stru
     if (size > 0 && comm->rank != 0) {
         *text = array_allocate((size_t)size, 1);
         comm_broadcast(comm, *text, (size_t)size);
-        CHECK(job_read_text(job, options->job, *text, &mistakes), "the job as used cannot be read back: %s",
+        CHECK(job_read_text(job, options->job, *text, &mistakes),
+              "the job as used cannot be read back: %s",
               mistakes.n > 0 ? mistakes.list[0].text : "");
     } else if (size > 0) {
         comm_broadcast(comm, *text, (size_t)size);

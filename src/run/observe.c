@@ -36,34 +36,46 @@ void observe_init(struct observe *observe, const struct simulation *sim)
     series_add_column(table, "1", "spheres in the run", "n_spheres");
     series_add_column(table, "J", "kinetic energy of translation", "kinetic_translation");
     series_add_column(table, "J", "kinetic energy of rotation", "kinetic_rotation");
-    series_add_column(table, "J", "potential energy in gravity, zero at the origin", "potential");
+    series_add_column(table, "J", "potential energy in gravity, zero at the origin",
+                      "potential");
     series_add_column(table, "J", "elastic energy in contacts", "elastic");
     series_add_column(table, "J", "dissipated by friction", "dissipated_friction");
-    series_add_column(table, "J", "dissipated by contact and background damping", "dissipated_damping");
-    series_add_column(table, "J", "lost by the tangential law as its stiffness changes", "dissipated_tangential");
+    series_add_column(table, "J", "dissipated by contact and background damping",
+                      "dissipated_damping");
+    series_add_column(table, "J", "lost by the tangential law as its stiffness changes",
+                      "dissipated_tangential");
     series_add_column(table, "J", "work of prescribed motion on the spheres", "work_bodies");
     series_add_column(table, "J", "energy carried away by spheres that left", "removed_energy");
-    series_add_column(table, "J", "energy now, dissipated and carried away, less energy at the start and work",
-                      "balance");
-    series_add_column(table, "1", "largest overlap over radius since the row before", "overlap_max");
+    series_add_column(
+        table, "J",
+        "energy now, dissipated and carried away, less energy at the start and work",
+        "balance");
+    series_add_column(table, "1", "largest overlap over radius since the row before",
+                      "overlap_max");
     series_add_column(table, "m/s", "largest speed", "speed_max");
     series_add_column(table, "1", "touching pairs of spheres", "n_contacts");
-    series_add_column(table, "1", "touching pairs of sphere and facet feature", "n_facet_contacts");
+    series_add_column(table, "1", "touching pairs of sphere and facet feature",
+                      "n_facet_contacts");
     for (int b = 0; b < sim->bodies.n; b++) {
         static const char axes[] = "xyz";
         for (int k = 0; k < 3; k++)
-            series_add_column(table, "N", "force on the body, mean since the row before", "%s.force_%c",
-                              sim->bodies.list[b].name, axes[k]);
+            series_add_column(table, "N", "force on the body, mean since the row before",
+                              "%s.force_%c", sim->bodies.list[b].name, axes[k]);
         for (int k = 0; k < 3; k++)
-            series_add_column(table, "N m", "torque on the body about the origin, mean since the row before",
+            series_add_column(table, "N m",
+                              "torque on the body about the origin, mean since the row before",
                               "%s.torque_%c", sim->bodies.list[b].name, axes[k]);
     }
     for (int s = 0; s < sim->sections.n; s++) {
         const char *name = sim->sections.list[s].name;
-        series_add_column(table, "1", "spheres that passed along the normal", "%s.count_forward", name);
-        series_add_column(table, "1", "spheres that passed against the normal", "%s.count_backward", name);
-        series_add_column(table, "kg", "mass that passed along the normal", "%s.mass_forward", name);
-        series_add_column(table, "kg", "mass that passed against the normal", "%s.mass_backward", name);
+        series_add_column(table, "1", "spheres that passed along the normal",
+                          "%s.count_forward", name);
+        series_add_column(table, "1", "spheres that passed against the normal",
+                          "%s.count_backward", name);
+        series_add_column(table, "kg", "mass that passed along the normal", "%s.mass_forward",
+                          name);
+        series_add_column(table, "kg", "mass that passed against the normal",
+                          "%s.mass_backward", name);
     }
 }
 
@@ -72,7 +84,8 @@ void observe_clear(struct observe *observe)
     series_clear(&observe->table);
 }
 
-/* Half-step velocity brought to the step by half of what the step will add.                    (5.4) */
+/* Half-step velocity brought to the step by half of what the step will add.
+ * (5.4) */
 static void centred_motion(const struct simulation *sim, int i, double v[3], double w[3])
 {
     const double *motion = sim->spheres.motion[i].lane, *spin = sim->spheres.spin[i].lane;
@@ -82,7 +95,8 @@ static void centred_motion(const struct simulation *sim, int i, double v[3], dou
     const double keep = (1.0 - half) / (1.0 + half), inverse_mass = spin[7];
     const double turn = 2.5 * inverse_mass * spin[3] * spin[3];
     for (int k = 0; k < 3; k++) {
-        const double after = keep * motion[4 + k] + push * sim->dt * (force[k] * inverse_mass + g[k]);
+        const double after =
+            keep * motion[4 + k] + push * sim->dt * (force[k] * inverse_mass + g[k]);
         const double spun = spin[4 + k] + push * sim->dt * force[4 + k] * turn;
         v[k] = 0.5 * (motion[4 + k] + after);
         w[k] = 0.5 * (spin[4 + k] + spun);
@@ -93,12 +107,14 @@ static double sphere_energies(const struct simulation *sim, int i, double energi
 {
     double v[3], w[3];
     centred_motion(sim, i, v, w);
-    const double mass = 1.0 / sphere_inverse_mass(&sim->spheres, i), radius = sphere_radius(&sim->spheres, i);
+    const double mass = 1.0 / sphere_inverse_mass(&sim->spheres, i),
+                 radius = sphere_radius(&sim->spheres, i);
     const double *x = sphere_position(&sim->spheres, i), *force = sim->spheres.force[i].lane;
     const double speed2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     const struct vec3 g = sim->job->gravity;
     energies[ENERGY_TRANSLATION] = 0.5 * mass * speed2;
-    energies[ENERGY_ROTATION] = 0.2 * mass * radius * radius * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
+    energies[ENERGY_ROTATION] =
+        0.2 * mass * radius * radius * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
     energies[ENERGY_POTENTIAL] = -mass * (g.x * x[0] + g.y * x[1] + g.z * x[2]);
     energies[ENERGY_FRICTION] = sim->spheres.dissipated_friction[i] + force[3];
     energies[ENERGY_DAMPING] = sim->spheres.dissipated_damping[i] + 0.5 * force[7];
@@ -118,12 +134,14 @@ static int64_t add_pair_energy(const struct simulation *sim, struct exact_sum *s
         const double *a = sim->spheres.motion[i].lane, *b = sim->spheres.motion[j].lane;
         const double dx = b[0] - a[0], dy = b[1] - a[1], dz = b[2] - a[2];
         const double overlap = a[3] + b[3] - sqrt(dx * dx + dy * dy + dz * dz);
-        const double inverse_radius = sim->spheres.spin[i].lane[3] + sim->spheres.spin[j].lane[3];
+        const double inverse_radius =
+            sim->spheres.spin[i].lane[3] + sim->spheres.spin[j].lane[3];
         double history[CONTACT_LANES];
         for (int l = 0; l < CONTACT_LANES; l++)
             history[l] = list->history[l][k];
         const int pair = sim->spheres.material[i] * sim->materials.n + sim->spheres.material[j];
-        exact_sum_add(sum, contact_law_elastic_energy(overlap, inverse_radius, &sim->materials.pairs[pair], history));
+        exact_sum_add(sum, contact_law_elastic_energy(overlap, inverse_radius,
+                                                      &sim->materials.pairs[pair], history));
         n++;
     }
     return n;
@@ -138,7 +156,8 @@ static int64_t count_facets(const struct simulation *sim)
 }
 
 /* Energies summed over ranks. */
-static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], double *speed_max, int64_t counts[3])
+static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], double *speed_max,
+                         int64_t counts[3])
 {
     struct exact_sum sums[N_ENERGIES] = {{{0}, 0, 0}};
     double speed2_max = 0.0, own[N_ENERGIES] = {0.0};
@@ -157,7 +176,8 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
                                   &sums[ENERGY_ELASTIC]);
     for (int b = 0; b < sim->facets.n_bodies; b++)
         exact_sum_merge(&sums[ENERGY_WORK], &sim->facets.loads[b].work);
-    static const int removed[] = {OBSERVE_REMOVED_FRICTION, OBSERVE_REMOVED_DAMPING, OBSERVE_REMOVED_TANGENTIAL};
+    static const int removed[] = {OBSERVE_REMOVED_FRICTION, OBSERVE_REMOVED_DAMPING,
+                                  OBSERVE_REMOVED_TANGENTIAL};
     for (int k = 0; k < 3; k++)
         exact_sum_merge(&sums[ENERGY_FRICTION + k], &sim->observe.totals[removed[k]]);
     exact_sum_reduce(sim->comm, sums, N_ENERGIES);
@@ -185,7 +205,8 @@ static double energy_held(const double energies[N_ENERGIES], double removed)
     return held;
 }
 
-static int add_energy_values(struct simulation *sim, double *row, int n, const double energies[N_ENERGIES])
+static int add_energy_values(struct simulation *sim, double *row, int n,
+                             const double energies[N_ENERGIES])
 {
     const double removed = total_of(sim, &sim->observe.totals[OBSERVE_REMOVED_ENERGY]);
     const double held = energy_held(energies, removed);
@@ -198,8 +219,8 @@ static int add_energy_values(struct simulation *sim, double *row, int n, const d
         row[n++] = energies[e];
     row[n++] = removed;
     row[n++] = sim->job->energy_ledger ? held - start : (double)NAN;
-    const double turned = energies[ENERGY_TRANSLATION] + energies[ENERGY_FRICTION] + energies[ENERGY_DAMPING] +
-                          fabs(energies[ENERGY_WORK]);
+    const double turned = energies[ENERGY_TRANSLATION] + energies[ENERGY_FRICTION] +
+                          energies[ENERGY_DAMPING] + fabs(energies[ENERGY_WORK]);
     sim->observe.energy_error = turned > 0.0 ? fabs(held - start) / turned : 0.0;
     return n;
 }
@@ -248,7 +269,8 @@ void observe_sample(struct simulation *sim)
     const double last = total_of(sim, &observe->totals[OBSERVE_LAST_STEP]);
     n = add_body_values(sim, row, n, (double)(sim->step + 1) - last);
     n = add_section_values(sim, row, n);
-    CHECK(n == observe->table.n_columns, "%d values for %d columns", n, observe->table.n_columns);
+    CHECK(n == observe->table.n_columns, "%d values for %d columns", n,
+          observe->table.n_columns);
     if (sim->comm->rank == 0) {
         series_add_row(&observe->table, row);
         observe->totals[OBSERVE_LAST_STEP] = (struct exact_sum){0};
@@ -272,15 +294,16 @@ void observe_removed(struct simulation *sim, int i)
     double energies[N_ENERGIES] = {0.0};
     struct exact_sum *totals = sim->observe.totals;
     sphere_energies(sim, i, energies);
-    exact_sum_add(&totals[OBSERVE_REMOVED_ENERGY], energies[ENERGY_TRANSLATION] + energies[ENERGY_ROTATION] +
+    exact_sum_add(&totals[OBSERVE_REMOVED_ENERGY], energies[ENERGY_TRANSLATION] +
+                                                       energies[ENERGY_ROTATION] +
                                                        energies[ENERGY_POTENTIAL]);
     exact_sum_add(&totals[OBSERVE_REMOVED_FRICTION], energies[ENERGY_FRICTION]);
     exact_sum_add(&totals[OBSERVE_REMOVED_DAMPING], energies[ENERGY_DAMPING]);
     exact_sum_add(&totals[OBSERVE_REMOVED_TANGENTIAL], energies[ENERGY_TANGENTIAL]);
 }
 
-static void add_monitor(struct observe_monitor **monitors, int *n, int *capacity, struct exact_sum *sum,
-                        const char *owner, const char *what)
+static void add_monitor(struct observe_monitor **monitors, int *n, int *capacity,
+                        struct exact_sum *sum, const char *owner, const char *what)
 {
     ARRAY_GROW(*monitors, *n + 1, *capacity);
     struct observe_monitor *monitor = &(*monitors)[(*n)++];
@@ -294,7 +317,8 @@ int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
         "energy_start",       "removed_energy", "removed_friction", "removed_damping",
         "removed_tangential", "last_step",      "overlap",
     };
-    static const char *const loads[] = {"force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z"};
+    static const char *const loads[] = {"force_x",  "force_y",  "force_z",
+                                        "torque_x", "torque_y", "torque_z"};
     int n = 0, capacity = 0;
     *monitors = NULL;
     for (int t = 0; t < OBSERVE_N_TOTALS; t++)
@@ -304,7 +328,8 @@ int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
         char owner[32];
         snprintf(owner, sizeof owner, "body_%d", b);
         for (int k = 0; k < 6; k++)
-            add_monitor(monitors, &n, &capacity, k < 3 ? &load->force[k] : &load->torque[k - 3], owner, loads[k]);
+            add_monitor(monitors, &n, &capacity, k < 3 ? &load->force[k] : &load->torque[k - 3],
+                        owner, loads[k]);
         add_monitor(monitors, &n, &capacity, &load->work, owner, "work");
     }
     for (int s = 0; s < sim->sections.n; s++) {

@@ -1,10 +1,11 @@
 /*
- * What a run reports over time: the rows of the "series" table, and the running totals behind them.
+ * What a run reports over time: the rows of the "series" table, and the running totals behind
+ * them.
  *
- * A sample belongs to the instant step * dt: it is taken when the forces of that instant are known and
- * before spheres move on, so velocities are brought from the half step to the step with them.  All totals
- * over ranks are exact sums, so rows do not depend on who owned what.  Totals that run over steps are
- * state: "monitors" in checkpoints.
+ * A sample belongs to the instant step * dt: it is taken when the forces of that instant are
+ * known and before spheres move on, so velocities are brought from the half step to the step
+ * with them.  All totals over ranks are exact sums, so rows do not depend on who owned what.
+ * Totals that run over steps are state: "monitors" in checkpoints.
  */
 #ifndef TREMIE_RUN_OBSERVE_H
 #define TREMIE_RUN_OBSERVE_H
@@ -18,13 +19,13 @@ struct simulation;
 
 /* Totals beside those of bodies and sections.  Shares of this rank. */
 enum observe_total {
-    OBSERVE_ENERGY_START,        /* all energy at step 0 [J] */
-    OBSERVE_REMOVED_ENERGY,      /* carried away by spheres that left [J] */
-    OBSERVE_REMOVED_FRICTION,    /* dissipated by them before they left [J] */
+    OBSERVE_ENERGY_START,     /* all energy at step 0 [J] */
+    OBSERVE_REMOVED_ENERGY,   /* carried away by spheres that left [J] */
+    OBSERVE_REMOVED_FRICTION, /* dissipated by them before they left [J] */
     OBSERVE_REMOVED_DAMPING,
     OBSERVE_REMOVED_TANGENTIAL,
-    OBSERVE_LAST_STEP,           /* step of the last sample, plus one; on rank 0 */
-    OBSERVE_OVERLAP,             /* largest overlap/radius since then, times 2^40; on rank 0 */
+    OBSERVE_LAST_STEP, /* step of the last sample, plus one; on rank 0 */
+    OBSERVE_OVERLAP,   /* largest overlap/radius since then, times 2^40; on rank 0 */
     OBSERVE_N_TOTALS,
 };
 

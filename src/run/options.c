@@ -12,11 +12,16 @@ static const struct {
     enum options_command command;
     bool takes_word;
 } COMMANDS[] = {
-    {"run", OPTIONS_RUN, true},         {"check", OPTIONS_CHECK, true},
-    {"status", OPTIONS_STATUS, true},   {"stop", OPTIONS_STOP, true},
-    {"reference", OPTIONS_REFERENCE, false}, {"version", OPTIONS_VERSION, false},
-    {"--version", OPTIONS_VERSION, false},   {"help", OPTIONS_HELP, false},
-    {"--help", OPTIONS_HELP, false},         {"-h", OPTIONS_HELP, false},
+    {"run", OPTIONS_RUN, true},
+    {"check", OPTIONS_CHECK, true},
+    {"status", OPTIONS_STATUS, true},
+    {"stop", OPTIONS_STOP, true},
+    {"reference", OPTIONS_REFERENCE, false},
+    {"version", OPTIONS_VERSION, false},
+    {"--version", OPTIONS_VERSION, false},
+    {"help", OPTIONS_HELP, false},
+    {"--help", OPTIONS_HELP, false},
+    {"-h", OPTIONS_HELP, false},
 };
 
 static bool read_isa(struct options *options, const char *name)
@@ -81,7 +86,8 @@ static bool read_command(struct options *options, const char *word, bool *takes_
 
 bool options_read(struct options *options, int argc, char **argv)
 {
-    *options = (struct options){.overrides = array_allocate((size_t)argc, sizeof *options->overrides)};
+    *options =
+        (struct options){.overrides = array_allocate((size_t)argc, sizeof *options->overrides)};
     bool takes_word = false;
     const char *object = NULL;
     if (argc >= 2 && !read_command(options, argv[1], &takes_word))
@@ -101,8 +107,9 @@ bool options_read(struct options *options, int argc, char **argv)
     }
     if (takes_word && object == NULL) {
         report_error("tremie %s needs a %s; see tremie --help", argv[1],
-                     options->command == OPTIONS_RUN || options->command == OPTIONS_CHECK ? "job file"
-                                                                                         : "run folder");
+                     options->command == OPTIONS_RUN || options->command == OPTIONS_CHECK
+                         ? "job file"
+                         : "run folder");
         return false;
     }
     options->job = options->run = object;

@@ -31,7 +31,8 @@ struct options {
     struct job_override *overrides;
 };
 
-/* Returns false, having said why, when the words make no sense.  Local, the same on all ranks. */
+/* Returns false, having said why, when the words make no sense.  Local, the same on all
+ * ranks. */
 bool options_read(struct options *options, int argc, char **argv);
 void options_clear(struct options *options);
 

@@ -1,8 +1,9 @@
 /*
  * Both levels of redistribution and global search: who owns what, who may touch whom.
  *
- * Any of it may happen at any step for any reason and changes no bit; the exceptions are the renewal of
- * canonical order and the removal of spheres, which fall on steps that the job fixes.
+ * Any of it may happen at any step for any reason and changes no bit; the exceptions are the
+ * renewal of canonical order and the removal of spheres, which fall on steps that the job
+ * fixes.
  */
 #ifndef TREMIE_RUN_REDISTRIBUTE_H
 #define TREMIE_RUN_REDISTRIBUTE_H
@@ -16,16 +17,17 @@ bool redistribute_is_due(const struct simulation *sim);
 /* The same for the inner list alone. */
 bool redistribute_inner_is_due(const struct simulation *sim);
 
-/* Makes everything anew.  removed marks owned spheres that leave the run, or is NULL.  Collective. */
+/* Makes everything anew.  removed marks owned spheres that leave the run, or is NULL.
+ * Collective. */
 void redistribute(struct simulation *sim, const unsigned char *removed);
 /* Makes the inner list anew out of the candidates.  Local, on all ranks together. */
 void redistribute_inner(struct simulation *sim);
-/* First distribution of spheres that lie anywhere, in any order; the migration holds the records of their
- * contacts.  Collective. */
+/* First distribution of spheres that lie anywhere, in any order; the migration holds the
+ * records of their contacts.  Collective. */
 void redistribute_first(struct simulation *sim);
 
-/* Books the motion of the step just done against the allowances; spent[] is the largest on any rank.
- * Finds out exactly where the bound says stale.  Collective when it does. */
+/* Books the motion of the step just done against the allowances; spent[] is the largest on any
+ * rank. Finds out exactly where the bound says stale.  Collective when it does. */
 void redistribute_spend(struct simulation *sim, const double spent[2]);
 
 #endif

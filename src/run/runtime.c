@@ -25,17 +25,23 @@ static void add_columns(struct series *table)
     series_add_column(table, "1", "spheres in the run", "n_spheres");
     series_add_column(table, "1", "spheres times steps since the row before", "particle_steps");
     for (int p = 0; p < RUNTIME_N_PHASES; p++) {
-        series_add_column(table, "s", "time in this phase, least over ranks", "%s.min", PHASE_NAMES[p]);
-        series_add_column(table, "s", "time in this phase, mean over ranks", "%s.mean", PHASE_NAMES[p]);
-        series_add_column(table, "s", "time in this phase, largest over ranks", "%s.max", PHASE_NAMES[p]);
+        series_add_column(table, "s", "time in this phase, least over ranks", "%s.min",
+                          PHASE_NAMES[p]);
+        series_add_column(table, "s", "time in this phase, mean over ranks", "%s.mean",
+                          PHASE_NAMES[p]);
+        series_add_column(table, "s", "time in this phase, largest over ranks", "%s.max",
+                          PHASE_NAMES[p]);
     }
     series_add_column(table, "1", "searches since the row before", "searches");
     series_add_column(table, "1", "renewals of the inner list", "prunes");
-    series_add_column(table, "1", "redistributions that moved spheres (high level)", "redistributions");
+    series_add_column(table, "1", "redistributions that moved spheres (high level)",
+                      "redistributions");
     series_add_column(table, "1", "repartitions (low level)", "repartitions");
     series_add_column(table, "1", "spheres that changed rank", "migrated");
-    series_add_column(table, "1", "largest over mean working time at the last verdict", "imbalance");
-    static const char *const sizes[] = {"owned", "ghosts", "internal", "interfacial", "candidates", "contacts"};
+    series_add_column(table, "1", "largest over mean working time at the last verdict",
+                      "imbalance");
+    static const char *const sizes[] = {"owned",       "ghosts",     "internal",
+                                        "interfacial", "candidates", "contacts"};
     for (int k = 0; k < 6; k++) {
         series_add_column(table, "1", "number a rank, least", "%s.min", sizes[k]);
         series_add_column(table, "1", "number a rank, mean", "%s.mean", sizes[k]);
@@ -109,8 +115,12 @@ void runtime_row(struct runtime *runtime, const struct comm *comm, int64_t step,
         spread(comm, row, &n, (int64_t)(runtime->phase[p] * NANOSECONDS), 1.0 / NANOSECONDS);
     int64_t migrated = runtime->migrated;
     comm_sum_int(comm, &migrated, 1);
-    const double counts[] = {(double)runtime->searches,     (double)runtime->prunes, (double)runtime->redistributions,
-                             (double)runtime->repartitions, (double)migrated,        runtime->imbalance};
+    const double counts[] = {(double)runtime->searches,
+                             (double)runtime->prunes,
+                             (double)runtime->redistributions,
+                             (double)runtime->repartitions,
+                             (double)migrated,
+                             runtime->imbalance};
     for (int k = 0; k < 6; k++)
         row[n++] = counts[k];
     const int64_t numbers[] = {sizes->n_owned,       sizes->n_ghosts,     sizes->n_internal,
@@ -118,7 +128,8 @@ void runtime_row(struct runtime *runtime, const struct comm *comm, int64_t step,
     for (int k = 0; k < 6; k++)
         spread(comm, row, &n, numbers[k], 1.0);
     spread(comm, row, &n, (int64_t)runtime_memory(), 1.0);
-    CHECK(n == runtime->table.n_columns, "%d values for %d columns", n, runtime->table.n_columns);
+    CHECK(n == runtime->table.n_columns, "%d values for %d columns", n,
+          runtime->table.n_columns);
     if (comm->rank == 0)
         series_add_row(&runtime->table, row);
     for (int p = 0; p < RUNTIME_N_PHASES; p++)

@@ -1,6 +1,6 @@
 /*
- * Where the time goes: wall time of each rank by phase, counts of searches and redistributions, and the
- * "runtime" table that tremie-runstats reads.  Nothing here feeds a result.
+ * Where the time goes: wall time of each rank by phase, counts of searches and redistributions,
+ * and the "runtime" table that tremie-runstats reads.  Nothing here feeds a result.
  */
 #ifndef TREMIE_RUN_RUNTIME_H
 #define TREMIE_RUN_RUNTIME_H
@@ -36,7 +36,8 @@ struct runtime {
     double mark;                    /* when the present phase began */
     double started, row_started;    /* [s] */
     int64_t row_step;
-    int64_t searches, prunes, redistributions, repartitions, migrated, particle_steps; /* since the last row */
+    int64_t searches, prunes, redistributions, repartitions, migrated,
+        particle_steps; /* since the last row */
     double imbalance;
     struct series table; /* on rank 0 */
 };

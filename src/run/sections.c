@@ -23,7 +23,8 @@ void sections_clear(struct sections *sections)
 /* Distance of the centre from the plane, positive on the forward side [m]. */
 static double distance(const struct job_section *section, const double *x)
 {
-    const struct vec3 offset = {x[0] - section->point.x, x[1] - section->point.y, x[2] - section->point.z};
+    const struct vec3 offset = {x[0] - section->point.x, x[1] - section->point.y,
+                                x[2] - section->point.z};
     return vec3_dot(offset, section->normal);
 }
 

@@ -1,8 +1,9 @@
 /*
  * Sections: planes that count what passes through them, each way, by number and mass.
  *
- * A sphere passes when its centre's side of the plane changes; sides are state (a bit a section).  Only
- * spheres that can reach a plane before the next search are looked at: a saving that changes no count.
+ * A sphere passes when its centre's side of the plane changes; sides are state (a bit a
+ * section).  Only spheres that can reach a plane before the next search are looked at: a saving
+ * that changes no count.
  */
 #ifndef TREMIE_RUN_SECTIONS_H
 #define TREMIE_RUN_SECTIONS_H
@@ -26,7 +27,7 @@ struct sections {
     int n_near, near_capacity;
     struct sections_near {
         int sphere, section;
-    } *near;
+    } * near;
 };
 
 void sections_init(struct sections *sections, const struct job *job);

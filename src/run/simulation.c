@@ -1,5 +1,6 @@
-/* See simulation.h.  A new scene and a checkpoint differ only in where the spheres come from: either way
- * each rank begins with a slice of the ids, and the first redistribution sends them to their owners. */
+/* See simulation.h.  A new scene and a checkpoint differ only in where the spheres come from:
+ * either way each rank begins with a slice of the ids, and the first redistribution sends them
+ * to their owners. */
 #include "run/simulation.h"
 
 #include <math.h>
@@ -30,7 +31,8 @@ double simulation_choose_step(const struct job *job, double *critical)
         for (int64_t k = 0; k < n; k++) {
             const struct packing_sphere sphere = packing_get(&packing, k);
             const struct job_material *m = &job->materials[sphere.material];
-            const double step = critical_step_rayleigh(sphere.radius, m->density, m->young, m->poisson);
+            const double step =
+                critical_step_rayleigh(sphere.radius, m->density, m->young, m->poisson);
             least = step < least ? step : least;
         }
         packing_close(&packing);
@@ -53,7 +55,8 @@ static bool one_material(const struct simulation *sim)
     return extremes[0] == -extremes[1];
 }
 
-/* Half of the buffer zone's width: by default half of the mean radius is the width (the paper's). */
+/* Half of the buffer zone's width: by default half of the mean radius is the width (the
+ * paper's). */
 static double choose_half_buffer(const struct simulation *sim)
 {
     if (sim->job->decomposition.buffer > 0.0)
@@ -103,15 +106,18 @@ static void finish(struct simulation *sim, enum pair_kernel_isa isa)
     runtime_begin(&sim->runtime);
 }
 
-static void add_sphere(struct simulation *sim, int64_t id, int group, const struct packing_sphere *new)
+static void add_sphere(struct simulation *sim, int64_t id, int group,
+                       const struct packing_sphere *new)
 {
     struct spheres *spheres = &sim->spheres;
     const int i = spheres->n_owned++;
     spheres_reserve(spheres, spheres->n_owned);
-    spheres->motion[i] = (struct sphere_row){{new->position.x, new->position.y, new->position.z, new->radius,
-                                              new->velocity.x, new->velocity.y, new->velocity.z, new->radius}};
-    spheres->spin[i] = (struct sphere_row){
-        {0.0, 0.0, 0.0, 0.0, new->angular_velocity.x, new->angular_velocity.y, new->angular_velocity.z, 0.0}};
+    spheres->motion[i] =
+        (struct sphere_row){{new->position.x, new->position.y, new->position.z, new->radius,
+                             new->velocity.x, new->velocity.y, new->velocity.z, new->radius}};
+    spheres->spin[i] =
+        (struct sphere_row){{0.0, 0.0, 0.0, 0.0, new->angular_velocity.x,
+                             new->angular_velocity.y, new->angular_velocity.z, 0.0}};
     spheres->force[i] = (struct sphere_row){{0.0}};
     spheres->id[i] = id;
     spheres->material[i] = new->material;
@@ -170,8 +176,9 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
     struct checkpoint checkpoint = {.spheres = &sim->spheres};
     int status = checkpoint_read(comm, checkpoint_path, &checkpoint);
     if (status == REPORT_FINISHED && restore_monitors(sim, &checkpoint) != REPORT_FINISHED) {
-        report_error("%s was written by a job with other bodies or sections; use the job it belongs to",
-                     checkpoint_path);
+        report_error(
+            "%s was written by a job with other bodies or sections; use the job it belongs to",
+            checkpoint_path);
         status = REPORT_BAD_INPUT;
     }
     if (status != REPORT_FINISHED) {
@@ -210,7 +217,8 @@ void simulation_destroy(struct simulation *sim)
     runtime_clear(&sim->runtime);
 }
 
-/* --------------------------------------------------------------------------------------- saving */
+/* ---------------------------------------------------------------------------------------
+ * saving */
 
 static int write_series(struct simulation *sim, const struct run_folder *folder)
 {
@@ -240,21 +248,25 @@ static struct runtime_sizes sizes_now(const struct simulation *sim)
     };
 }
 
-static int write_checkpoint(struct simulation *sim, const struct run_folder *folder, const char *job_text)
+static int write_checkpoint(struct simulation *sim, const struct run_folder *folder,
+                            const char *job_text)
 {
     struct contact_record *contacts = NULL;
     struct facet_contact_record *facets = NULL;
     struct observe_monitor *totals;
     int capacity = 0;
-    struct checkpoint checkpoint = {.step = sim->step, .dt = sim->dt, .next_id = sim->next_id, .spheres = &sim->spheres};
+    struct checkpoint checkpoint = {
+        .step = sim->step, .dt = sim->dt, .next_id = sim->next_id, .spheres = &sim->spheres};
     checkpoint.title = array_string(sim->job->title);
     checkpoint.job_text = array_string(job_text);
-    checkpoint.n_contacts = contact_set_records(&sim->contacts, &sim->spheres, NULL, &contacts, &capacity);
+    checkpoint.n_contacts =
+        contact_set_records(&sim->contacts, &sim->spheres, NULL, &contacts, &capacity);
     checkpoint.contacts = contacts;
     checkpoint.n_facet_contacts = facet_contacts_records(&sim->facets, &sim->spheres, &facets);
     checkpoint.facet_contacts = facets;
     checkpoint.n_monitors = observe_monitors(sim, &totals);
-    checkpoint.monitors = array_allocate((size_t)checkpoint.n_monitors, sizeof *checkpoint.monitors);
+    checkpoint.monitors =
+        array_allocate((size_t)checkpoint.n_monitors, sizeof *checkpoint.monitors);
     for (int m = 0; m < checkpoint.n_monitors; m++) {
         memcpy(checkpoint.monitors[m].name, totals[m].name, sizeof totals[m].name);
         checkpoint.monitors[m].sum = *totals[m].sum;
@@ -274,11 +286,12 @@ int simulation_save_series(struct simulation *sim, const struct run_folder *fold
     return comm_agree(sim->comm, write_series(sim, folder));
 }
 
-int simulation_save(struct simulation *sim, const struct run_folder *folder, const char *job_text)
+int simulation_save(struct simulation *sim, const struct run_folder *folder,
+                    const char *job_text)
 {
     runtime_begin(&sim->runtime);
-    /* Series first: a checkpoint without its rows would leave a gap, rows without a checkpoint are set
-     * aside at the next start. */
+    /* Series first: a checkpoint without its rows would leave a gap, rows without a checkpoint
+     * are set aside at the next start. */
     int status = simulation_save_series(sim, folder);
     if (status == REPORT_FINISHED)
         status = write_checkpoint(sim, folder, job_text);

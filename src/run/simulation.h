@@ -1,6 +1,6 @@
 /*
- * A simulation on one rank: all that the step works on.  step.h moves it; redistribute.h finds who
- * touches and who owns; watch.h looks for failure; observe.h reports.
+ * A simulation on one rank: all that the step works on.  step.h moves it; redistribute.h finds
+ * who touches and who owns; watch.h looks for failure; observe.h reports.
  */
 #ifndef TREMIE_RUN_SIMULATION_H
 #define TREMIE_RUN_SIMULATION_H
@@ -53,15 +53,17 @@ struct simulation {
     struct candidates candidates;
     struct contact_set contacts;
     struct facet_contacts facets;
-    double *body_allowance; /* how far each body's surface may move before a search is due [m] */
+    double
+        *body_allowance; /* how far each body's surface may move before a search is due [m] */
     struct pair_kernel kernel;
-    double overlap_max;     /* largest overlap over radius in the last step, of pairs, on this rank */
+    double
+        overlap_max; /* largest overlap over radius in the last step, of pairs, on this rank */
 
     struct boxes boxes;
     struct halo halo;
     struct migrate migrate;
     struct balance balance;
-    double half_buffer;     /* least allowance of a search [m] */
+    double half_buffer; /* least allowance of a search [m] */
     struct simulation_spent spent;
 
     struct sections sections;
@@ -78,14 +80,16 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
                        enum pair_kernel_isa isa, const char *checkpoint_path);
 void simulation_destroy(struct simulation *sim);
 
-/* Writes series and checkpoint of the present step into the folder and drops old checkpoints.  Returns a
- * REPORT_ status.  Collective. */
-int simulation_save(struct simulation *sim, const struct run_folder *folder, const char *job_text);
+/* Writes series and checkpoint of the present step into the folder and drops old checkpoints.
+ * Returns a REPORT_ status.  Collective. */
+int simulation_save(struct simulation *sim, const struct run_folder *folder,
+                    const char *job_text);
 /* The rows so far alone.  Collective. */
 int simulation_save_series(struct simulation *sim, const struct run_folder *folder);
 
-/* The step that the job asks for, or `safety` times the critical step of the scene [s], and, for
- * reports, that critical step.  Depends on the job alone; steps read from CSV files count. */
+/* The step that the job asks for, or `safety` times the critical step of the scene [s], and,
+ * for reports, that critical step.  Depends on the job alone; steps read from CSV files
+ * count. */
 double simulation_choose_step(const struct job *job, double *critical);
 
 #endif

@@ -22,7 +22,8 @@
 #include "run/redistribute.h"
 #include "run/simulation.h"
 
-/* Steps between looks for spheres that left the domain: when they are removed is part of the result. */
+/* Steps between looks for spheres that left the domain: when they are removed is part of the
+ * result. */
 enum { LEAVERS_EVERY = 64 };
 
 static void remove_leavers(struct simulation *sim)
@@ -83,7 +84,8 @@ static void integrate(struct simulation *sim, double spent[2], bool *bad)
     };
     integrate_spheres(&work);
     for (int i = spheres->n_owned; i < spheres->n_all; i++)
-        spheres->force[i] = (struct sphere_row){{0.0}}; /* what ghosts feel is their owner's business */
+        spheres->force[i] =
+            (struct sphere_row){{0.0}}; /* what ghosts feel is their owner's business */
     spent[0] = work.spent[0];
     spent[1] = work.spent[1];
     *bad = work.bad;

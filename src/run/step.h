@@ -4,8 +4,8 @@
 
 struct simulation;
 
-/* Lists fresh, bodies in place, all contact forces of the present instant known; a sample taken where
- * one is due.  Collective. */
+/* Lists fresh, bodies in place, all contact forces of the present instant known; a sample taken
+ * where one is due.  Collective. */
 void step_forces(struct simulation *sim);
 /* One whole step.  Collective. */
 void step(struct simulation *sim);

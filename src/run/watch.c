@@ -15,7 +15,8 @@
 
 void watch_init(struct watch *watch, double checkpoint_every)
 {
-    *watch = (struct watch){.checkpoint_every = checkpoint_every, .checkpoint_at = timer_now() + checkpoint_every};
+    *watch = (struct watch){.checkpoint_every = checkpoint_every,
+                            .checkpoint_at = timer_now() + checkpoint_every};
 }
 
 /* The first failure stands. */
@@ -29,9 +30,14 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
 {
     enum { SPENT_SEARCH, SPENT_INNER, OVERLAP, BAD, STOP, CHECKPOINT, N_VALUES };
     const double pairs = sim->overlap_max, facets = sim->facets.overlap_max;
-    const bool due = sim->comm->rank == 0 && watch->checkpoint_every > 0.0 && timer_now() > watch->checkpoint_at;
-    double values[N_VALUES] = {spent[0], spent[1], pairs > facets ? pairs : facets,
-                               bad ? 1.0 : 0.0, watch->stop_asked || control_asked() != 0 ? 1.0 : 0.0, due ? 1.0 : 0.0};
+    const bool due = sim->comm->rank == 0 && watch->checkpoint_every > 0.0 &&
+                     timer_now() > watch->checkpoint_at;
+    double values[N_VALUES] = {spent[0],
+                               spent[1],
+                               pairs > facets ? pairs : facets,
+                               bad ? 1.0 : 0.0,
+                               watch->stop_asked || control_asked() != 0 ? 1.0 : 0.0,
+                               due ? 1.0 : 0.0};
     comm_max(sim->comm, values, N_VALUES);
     spent[0] = values[SPENT_SEARCH];
     spent[1] = values[SPENT_INNER];
@@ -73,10 +79,12 @@ void watch_motion(struct watch *watch, const struct simulation *sim)
         return;
     fail(watch, WATCH_MOTION);
     if (largest[1] > sim->job->watch.motion && body_worst >= 0)
-        snprintf(watch->what, sizeof watch->what, "body '%.60s' moves %.3g of the least radius in a step",
+        snprintf(watch->what, sizeof watch->what,
+                 "body '%.60s' moves %.3g of the least radius in a step",
                  sim->bodies.list[body_worst].name, largest[1]);
     else if (worst >= 0 && most >= largest[0])
-        snprintf(watch->what, sizeof watch->what, "sphere %lld moves %.3g of its radius in a step",
+        snprintf(watch->what, sizeof watch->what,
+                 "sphere %lld moves %.3g of its radius in a step",
                  (long long)spheres->id[worst], most);
 }
 
@@ -90,7 +98,8 @@ void watch_energy(struct watch *watch, const struct simulation *sim)
 static bool is_outside(const struct job *job, const double *x)
 {
     const struct vec3 low = job->domain.min, high = job->domain.max;
-    return !(x[0] >= low.x && x[1] >= low.y && x[2] >= low.z && x[0] <= high.x && x[1] <= high.y && x[2] <= high.z);
+    return !(x[0] >= low.x && x[1] >= low.y && x[2] >= low.z && x[0] <= high.x &&
+             x[1] <= high.y && x[2] <= high.z);
 }
 
 int watch_leavers(struct watch *watch, struct simulation *sim, unsigned char *removed)
@@ -116,7 +125,8 @@ int watch_leavers(struct watch *watch, struct simulation *sim, unsigned char *re
     return (int)n;
 }
 
-/* -------------------------------------------------------------------------------------- diagnosis */
+/* --------------------------------------------------------------------------------------
+ * diagnosis */
 
 static void find_bad(const struct simulation *sim, char *what, size_t size)
 {
@@ -136,14 +146,16 @@ static void find_overlap(const struct simulation *sim, double overlap, char *wha
     const struct contact_list *list = &sim->contacts.now;
     double deepest = 0.0;
     for (int k = 0; k < list->n; k++) {
-        const double *a = sim->spheres.motion[list->first[k]].lane, *b = sim->spheres.motion[list->second[k]].lane;
+        const double *a = sim->spheres.motion[list->first[k]].lane,
+                     *b = sim->spheres.motion[list->second[k]].lane;
         const double dx = b[0] - a[0], dy = b[1] - a[1], dz = b[2] - a[2];
-        const double depth = (a[3] + b[3] - sqrt(dx * dx + dy * dy + dz * dz)) * 0.5 * (1.0 / a[3] + 1.0 / b[3]);
+        const double depth =
+            (a[3] + b[3] - sqrt(dx * dx + dy * dy + dz * dz)) * 0.5 * (1.0 / a[3] + 1.0 / b[3]);
         if (depth > deepest && depth > 0.5 * overlap) {
             deepest = depth;
             snprintf(what, size, "spheres %lld and %lld near (%.4g, %.4g, %.4g) m",
-                     (long long)sim->spheres.id[list->first[k]], (long long)sim->spheres.id[list->second[k]],
-                     a[0], a[1], a[2]);
+                     (long long)sim->spheres.id[list->first[k]],
+                     (long long)sim->spheres.id[list->second[k]], a[0], a[1], a[2]);
         }
     }
     if (deepest == 0.0 && sim->facets.overlap_max >= overlap)
@@ -174,33 +186,47 @@ void watch_explain(const struct watch *watch, const struct simulation *sim)
     const long long step = (long long)sim->step;
     switch (watch->failure) {
     case WATCH_NOT_A_NUMBER:
-        report_error("not a number at step %lld (%.6g s): %s has no place or velocity any more; use a smaller "
-                     "time.step, or look for overlapping spheres at the start",
-                     step, time, own.what);
+        report_error(
+            "not a number at step %lld (%.6g s): %s has no place or velocity any more; use a "
+            "smaller "
+            "time.step, or look for overlapping spheres at the start",
+            step, time, own.what);
         break;
     case WATCH_OVERLAP:
-        report_error("overlap at step %lld (%.6g s): %s overlap by %.3g of a radius, more than watch.overlap = "
-                     "%.3g; use a larger young, a smaller time.step or lower speeds, or separate what overlaps at "
-                     "the start",
-                     step, time, own.what, watch->overlap, sim->job->watch.overlap);
+        report_error(
+            "overlap at step %lld (%.6g s): %s overlap by %.3g of a radius, more than "
+            "watch.overlap = "
+            "%.3g; use a larger young, a smaller time.step or lower speeds, or separate what "
+            "overlaps at "
+            "the start",
+            step, time, own.what, watch->overlap, sim->job->watch.overlap);
         break;
     case WATCH_MOTION:
-        report_error("motion too fast at step %lld (%.6g s): %s, more than watch.motion = %.3g, so contacts could "
-                     "be missed; use a smaller time.step or lower speeds",
-                     step, time, own.what, sim->job->watch.motion);
+        report_error(
+            "motion too fast at step %lld (%.6g s): %s, more than watch.motion = %.3g, so "
+            "contacts could "
+            "be missed; use a smaller time.step or lower speeds",
+            step, time, own.what, sim->job->watch.motion);
         break;
     case WATCH_LEAVER:
-        report_error("sphere left the domain at step %lld (%.6g s): %s; close the bodies, enlarge domain.min and "
-                     "domain.max, or set domain.leavers to remove or ignore",
-                     step, time, own.what);
+        report_error(
+            "sphere left the domain at step %lld (%.6g s): %s; close the bodies, enlarge "
+            "domain.min and "
+            "domain.max, or set domain.leavers to remove or ignore",
+            step, time, own.what);
         break;
     case WATCH_ENERGY:
-        report_error("energy balance at step %lld (%.6g s): off by %.3g of the energy turned over, more than "
-                     "watch.energy = %.3g; use a smaller time.step",
-                     step, time, sim->observe.energy_error, sim->job->watch.energy);
+        report_error(
+            "energy balance at step %lld (%.6g s): off by %.3g of the energy turned over, "
+            "more than "
+            "watch.energy = %.3g; use a smaller time.step",
+            step, time, sim->observe.energy_error, sim->job->watch.energy);
         break;
     case WATCH_SUMS:
-        report_error("a force or energy at step %lld (%.6g s) is beyond 1e18; check the units of the job", step, time);
+        report_error(
+            "a force or energy at step %lld (%.6g s) is beyond 1e18; check the units of the "
+            "job",
+            step, time);
         break;
     case WATCH_FINE:
     default:
