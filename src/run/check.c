@@ -1,6 +1,7 @@
 /* See check.h. */
 #include "run/check.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 #include "base/array.h"
@@ -204,17 +205,24 @@ static void print_bodies(const struct job *job, struct extent *scene)
     bodies_clear(&bodies);
 }
 
+/* Speed after a fall through half the domain along gravity; 1 m/s without gravity. */
+static double fall_speed(const struct job *job)
+{
+    const struct vec3 g = job->gravity, size = vec3_sub(job->domain.max, job->domain.min);
+    const double along = fabs(g.x) * size.x + fabs(g.y) * size.y + fabs(g.z) * size.z;
+    return along > 0.0 ? sqrt(along) : 1.0;
+}
+
 void check_print(const struct job *job, int n_ranks)
 {
     enum { BYTES_A_SPHERE = 1100, NANOSECONDS_A_STEP = 60 };
     struct extent scene = extent_nothing();
     int64_t n = 0;
-    const double g = vec3_norm(job->gravity), n_steps = job->time.end / job->time.step;
     report_say("job      %s: %s", job->path, job->title);
     report_say("time     %.6g s in %.0f steps of %.6g s", job->time.end, n_steps,
                job->time.step);
-    /* A guess at impact speeds: a fall of two metres, or what is given. */
-    double speed = g > 0.0 ? 6.3 : 1.0;
+    /* Impact speeds: a fall through the scene, or what is given. */
+    double speed = fall_speed(job);
     for (int k = 0; k < job->n_spheres; k++) {
         const double given = vec3_norm(job->spheres[k].velocity);
         speed = given > speed ? given : speed;

@@ -248,11 +248,13 @@ static int loop(struct drive *drive)
     return status;
 }
 
-/* The rows of the last instant: its forces are computed but nothing moves any more. */
+/* The rows of the last instant: its forces are computed but nothing moves any more.  A run that failed
+ * keeps the rows that it has. */
 static int finish_series(struct drive *drive)
 {
     struct simulation *sim = &drive->sim;
-    step_forces(sim);
+    if (sim->watch.failure == WATCH_FINE)
+        step_forces(sim);
     /* The segment is named after the step that would be next; a longer run replaces it. */
     sim->step++;
     const int status = simulation_save_series(sim, &drive->folder);
@@ -270,6 +272,8 @@ static int finish(struct drive *drive, int status)
         status = REPORT_STOPPED;
     if (status == REPORT_FINISHED)
         status = finish_series(drive);
+    else if (status == REPORT_UNSTABLE)
+        (void)finish_series(drive);
     format_duration(took, sizeof took, elapsed);
     const double rate = elapsed > 0.0 ? done * (double)sim->n_spheres / elapsed : 0.0;
     if (status == REPORT_FINISHED)

@@ -78,6 +78,8 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     sim->dt = job->time.step;
     sim->n_steps = (int64_t)(job->time.end / sim->dt + 0.5);
     sim->sample_every = (int64_t)(job->output.series_every / sim->dt + 0.5);
+    if (job->output.series_every > 0.0 && sim->sample_every == 0)
+        sim->sample_every = 1;
     materials_build(&sim->materials, job);
     bodies_build(&sim->bodies, job);
     spheres_init(&sim->spheres);
@@ -235,7 +237,7 @@ static int write_series(struct simulation *sim, const struct run_folder *folder)
     return status;
 }
 
-static struct runtime_sizes sizes_now(const struct simulation *sim)
+struct runtime_sizes simulation_sizes(const struct simulation *sim)
 {
     return (struct runtime_sizes){
         .n_owned = sim->spheres.n_owned,
@@ -281,7 +283,7 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
 
 int simulation_save_series(struct simulation *sim, const struct run_folder *folder)
 {
-    const struct runtime_sizes sizes = sizes_now(sim);
+    const struct runtime_sizes sizes = simulation_sizes(sim);
     runtime_row(&sim->runtime, sim->comm, sim->step, (double)sim->step * sim->dt, &sizes);
     return comm_agree(sim->comm, write_series(sim, folder));
 }

@@ -84,6 +84,8 @@ void simulation_destroy(struct simulation *sim);
  * Returns a REPORT_ status.  Collective. */
 int simulation_save(struct simulation *sim, const struct run_folder *folder,
                     const char *job_text);
+/* Sizes on this rank, for the runtime table.  Local. */
+struct runtime_sizes simulation_sizes(const struct simulation *sim);
 /* The rows so far alone.  Collective. */
 int simulation_save_series(struct simulation *sim, const struct run_folder *folder);
 

@@ -113,9 +113,12 @@ void step_forces(struct simulation *sim)
     runtime_end(runtime, RUNTIME_PAIRS);
     sim->balance.busy += timer_now() - began;
     if (sim->sample_every > 0 && sim->step % sim->sample_every == 0) {
+        const struct runtime_sizes sizes = simulation_sizes(sim);
         observe_sample(sim);
         watch_energy(&sim->watch, sim);
         runtime_end(runtime, RUNTIME_SAMPLE);
+        runtime_row(runtime, sim->comm, sim->step, (double)sim->step * sim->dt, &sizes);
+        runtime_begin(runtime);
     }
 }
 

@@ -91,6 +91,8 @@ void watch_motion(struct watch *watch, const struct simulation *sim)
 void watch_energy(struct watch *watch, const struct simulation *sim)
 {
     const double limit = sim->job->watch.energy;
+    if (sim->job->energy_ledger && sim->observe.energy_error != sim->observe.energy_error)
+        fail(watch, WATCH_SUMS);
     if (limit > 0.0 && !(sim->observe.energy_error <= limit))
         fail(watch, WATCH_ENERGY);
 }
