@@ -218,6 +218,7 @@ void check_print(const struct job *job, int n_ranks)
     enum { BYTES_A_SPHERE = 1100, NANOSECONDS_A_STEP = 60 };
     struct extent scene = extent_nothing();
     int64_t n = 0;
+    const double n_steps = job->time.end / job->time.step;
     report_say("job      %s: %s", job->path, job->title);
     report_say("time     %.6g s in %.0f steps of %.6g s", job->time.end, n_steps,
                job->time.step);
