@@ -58,8 +58,8 @@ static bool is_result(const char *name)
 
 static bool is_ours(const char *name)
 {
-    return is_result(name) || strcmp(name, "lock") == 0 || name[0] == '.' ||
-           strncmp(name, SET_ASIDE, sizeof SET_ASIDE - 1) == 0;
+    return is_result(name) || strcmp(name, "lock") == 0 || strcmp(name, "stop") == 0 ||
+           name[0] == '.' || strncmp(name, SET_ASIDE, sizeof SET_ASIDE - 1) == 0;
 }
 
 /* ----------------------------------------------------------------------------- a first look */
