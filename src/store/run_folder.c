@@ -56,10 +56,22 @@ static bool is_result(const char *name)
     return false;
 }
 
+/* Tables and pictures that people make of a run and keep beside it. */
+static bool is_report(const char *name)
+{
+    static const char *const ends[] = {".svg", ".png", ".csv", ".txt", ".html"};
+    const char *dot = strrchr(name, '.');
+    for (size_t k = 0; dot != NULL && k < sizeof ends / sizeof *ends; k++)
+        if (strcmp(dot, ends[k]) == 0)
+            return true;
+    return false;
+}
+
 static bool is_ours(const char *name)
 {
-    return is_result(name) || strcmp(name, "lock") == 0 || strcmp(name, "stop") == 0 ||
-           name[0] == '.' || strncmp(name, SET_ASIDE, sizeof SET_ASIDE - 1) == 0;
+    return is_result(name) || is_report(name) || strcmp(name, "lock") == 0 ||
+           strcmp(name, "stop") == 0 || name[0] == '.' ||
+           strncmp(name, SET_ASIDE, sizeof SET_ASIDE - 1) == 0;
 }
 
 /* ----------------------------------------------------------------------------- a first look */
