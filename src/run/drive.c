@@ -19,6 +19,7 @@
 #include "run/options.h"
 #include "run/simulation.h"
 #include "run/step.h"
+#include "store/checkpoint.h"
 #include "store/run_folder.h"
 
 /* Seconds between looks at the clock's chores: progress, status, the stop file. */
@@ -83,12 +84,37 @@ static void describe_run(const struct drive *drive)
                 drive->comm->n_ranks, host, pair_kernel_isa_name(drive->sim.kernel.isa));
 }
 
+/* Does the checkpoint belong to this job?  On rank 0, which says what differs. */
+static int compare_job(const struct drive *drive, const char *path)
+{
+    struct checkpoint header = {0};
+    char *why = NULL, *difference = NULL;
+    if (!checkpoint_read_header(path, &header, &why)) {
+        free(why); /* reading all of it says why */
+        return REPORT_FINISHED;
+    }
+    difference = job_difference(header.job_text, drive->job_text);
+    if (difference != NULL)
+        report_error("%s was written by another job (%s); run the job that it belongs to", path,
+                     difference);
+    const int status = difference != NULL ? REPORT_BAD_INPUT : REPORT_FINISHED;
+    free(difference);
+    checkpoint_clear(&header);
+    return status;
+}
+
 /* Tries one checkpoint; the path is rank 0's. */
 static int try_checkpoint(struct drive *drive, const char *path)
 {
     char shared[4096] = "";
-    if (drive->comm->rank == 0)
+    int status = REPORT_FINISHED;
+    if (drive->comm->rank == 0) {
         snprintf(shared, sizeof shared, "%s", path);
+        status = compare_job(drive, path);
+    }
+    status = comm_agree(drive->comm, status);
+    if (status != REPORT_FINISHED)
+        return status;
     comm_broadcast(drive->comm, shared, sizeof shared);
     return simulation_restart(&drive->sim, drive->comm, drive->job, drive->options->isa,
                               shared);

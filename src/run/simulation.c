@@ -171,16 +171,37 @@ static int restore_monitors(struct simulation *sim, const struct checkpoint *che
     return status;
 }
 
+/* A file may name materials and features that the job does not have. */
+static bool fits_job(const struct simulation *sim, const struct checkpoint *checkpoint)
+{
+    bool fits = true;
+    for (int i = 0; i < sim->spheres.n_owned; i++) {
+        const int material = sim->spheres.material[i];
+        fits = fits && material >= 0 && material < sim->materials.n &&
+               sphere_radius(&sim->spheres, i) > 0.0;
+    }
+    for (int r = 0; r < checkpoint->n_facet_contacts; r++) {
+        const struct facet_contact_record *record = &checkpoint->facet_contacts[r];
+        fits = fits && record->body >= 0 && record->body < sim->bodies.n;
+        if (fits)
+            fits = record->feature >= 0 &&
+                   record->feature < mesh_n_features(&sim->bodies.list[record->body].mesh);
+    }
+    return fits;
+}
+
 int simulation_restart(struct simulation *sim, const struct comm *comm, const struct job *job,
                        enum pair_kernel_isa isa, const char *checkpoint_path)
 {
     begin(sim, comm, job);
     struct checkpoint checkpoint = {.spheres = &sim->spheres};
     int status = checkpoint_read(comm, checkpoint_path, &checkpoint);
-    if (status == REPORT_FINISHED && restore_monitors(sim, &checkpoint) != REPORT_FINISHED) {
-        report_error(
-            "%s was written by a job with other bodies or sections; use the job it belongs to",
-            checkpoint_path);
+    const bool fits = status == REPORT_FINISHED && fits_job(sim, &checkpoint) &&
+                      restore_monitors(sim, &checkpoint) == REPORT_FINISHED;
+    if (status == REPORT_FINISHED && comm_agree(comm, fits ? 0 : 1) != 0) {
+        report_error("%s has other materials, bodies or sections than the job; "
+                     "use the job it belongs to",
+                     checkpoint_path);
         status = REPORT_BAD_INPUT;
     }
     if (status != REPORT_FINISHED) {
