@@ -73,6 +73,7 @@ LANES_INLINE lanes contact_law_dot(const lanes a[3], const lanes b[3])
 /* What the law works out on its way, per contact. */
 struct contact_law_work {
     lanes_mask touching, touched; /* now; in the last step */
+    lanes mass;                   /* m* [kg] */
     lanes radius;                 /* of the contact, a [m] */
     lanes inverse_old;            /* 1 / radius of the last step; infinite where new [1/m] */
     lanes v_n, v_t[3];            /* relative velocity across and along the contact [m/s] */
@@ -96,8 +97,7 @@ LANES_INLINE void contact_law_push(struct contact_law_work *work,
                                    const lanes *history, struct contact_law_result *result)
 {
     const lanes v_old = lanes_where(work->touched, history[CONTACT_LAW_VELOCITY], work->v_n);
-    const lanes c_n =
-        pair->damping * lanes_sqrt(work->radius / meeting->inverse_mass); /* (1.6) */
+    const lanes c_n = pair->damping * lanes_sqrt(work->radius * work->mass); /* (1.6) */
 
     work->v_now = work->v_n + 0.5 * (work->v_n - v_old);              /* (1.7) */
     work->f_elastic = pair->normal * work->radius * meeting->overlap; /* (1.5) */
@@ -121,7 +121,7 @@ LANES_INLINE void contact_law_grip(struct contact_law_work *work,
     work->inverse_old = one / radius_old;
     work->scale = lanes_where(work->radius < radius_old, work->radius * work->inverse_old, one);
     work->taken = contact_law_dot(history, n);
-    work->stretch = pair->tangential * work->radius * dt; /* (1.9) */
+    work->stretch = pair->tangential * dt * work->radius; /* (1.9) */
 #pragma GCC unroll 3
     for (int x = 0; x < 3; x++) {
         work->turned[x] = history[x] - work->taken * n[x];                   /* (1.10) */
@@ -164,25 +164,28 @@ LANES_INLINE void contact_law_ledger(const struct contact_law_work *work,
 {
     const lanes one = lanes_all(1.0), softness = one / pair->tangential; /* [1/Pa] */
     const lanes inverse_a = one / work->radius; /* infinite where they do not touch [1/m] */
-    /* Products of the spring's force, scaled (h1) and stretched (h2), and of v_t. */
+    /* Products of v_t and the spring's force, scaled (h1) and stretched (h2). */
     const lanes h1_h1 = work->scale * work->scale * work->turned_turned;
     const lanes h1_v = work->scale * work->turned_v;
-    const lanes h1_h2 = h1_h1 + work->stretch * h1_v;
     const lanes h2_v = h1_v + work->stretch * work->v_v;
-    const lanes h2_h2 = h1_h2 + work->stretch * h2_v;
 
-    /* The spring that slides: the mean of its force before and after, times how far. */
-    const lanes slid =
-        0.5 * softness * inverse_a * (h1_h2 + work->share * h2_h2) * (one - work->share);
-    /* The dashpot.  Velocity comes from the half step to the step by what this contact's own
-     * force does to it: 7/4 dt / m* f. */
-    const lanes half = 1.75 * meeting->inverse_mass * dt;
+    /* Dashpots.  The tangential velocity comes from the half step to the step by what this
+     * contact's own force does to it: 7/4 dt / m* f. */
+    const lanes half = 1.75 * dt * meeting->inverse_mass;
     const lanes g_v = work->share * (h2_v + work->c_t * work->v_v);
     const lanes dashed = work->share * work->c_t * (work->v_v - half * g_v) * dt;
     const lanes pushed = (work->f_elastic - result->normal) * work->v_now * dt;
-    result->lost_friction = lanes_keep(work->sliding, slid + dashed); /* (1.16) */
-    result->lost_damping =
-        pushed + lanes_where(work->sliding, lanes_all(0.0), dashed); /* (1.17) */
+    result->lost_damping = pushed + dashed; /* (1.17) */
+
+    /* The spring that slides: the mean of its force before and after, times how far. */
+    if (lanes_any(work->sliding)) {
+        const lanes h1_h2 = h1_h1 + work->stretch * h1_v;
+        const lanes h2_h2 = h1_h2 + work->stretch * h2_v;
+        const lanes mean = 0.5 * (h1_h2 + work->share * h2_h2);
+        const lanes slid = mean * (one - work->share) * softness * inverse_a;
+        result->lost_friction = lanes_keep(work->sliding, slid + dashed); /* (1.16) */
+        result->lost_damping = lanes_where(work->sliding, pushed, result->lost_damping);
+    }
 
     /* The memory turned, the stiffness changed, and work was done against the force before. */
     const lanes turned = work->turned_turned + work->taken * work->taken;
@@ -203,9 +206,10 @@ LANES_INLINE void contact_law(const struct contact_law_meeting *meeting,
 {
     const lanes *n = meeting->normal, *v = meeting->velocity;
     struct contact_law_work work = {.touching = meeting->overlap > lanes_all(0.0),
-                                    .touched = history[CONTACT_LAW_RADIUS] > lanes_all(0.0)};
+                                    .touched = history[CONTACT_LAW_RADIUS] > lanes_all(0.0),
+                                    .mass = 1.0 / meeting->inverse_mass};
 
-    work.radius = lanes_sqrt(meeting->overlap / meeting->inverse_radius); /* (1.4) */
+    work.radius = lanes_sqrt(meeting->overlap * (1.0 / meeting->inverse_radius)); /* (1.4) */
     work.v_n = contact_law_dot(v, n);
 #pragma GCC unroll 3
     for (int x = 0; x < 3; x++)
