@@ -17,11 +17,12 @@
 #include "records.h"
 #include "sheet.h"
 
-enum { N_PHASES = 10, NAME_SIZE = 64, NOTHING_TO_REPORT = 1, RUNS_MOST = 1000 };
+enum { N_PHASES = 11, NAME_SIZE = 64, NOTHING_TO_REPORT = 1, RUNS_MOST = 1000 };
 
-static const char *const phases[N_PHASES] = {"bodies", "facets",    "pairs",  "integrate",
-                                             "halo",   "watch",     "search", "redistribute",
-                                             "sample", "checkpoint"};
+static const char *const phases[N_PHASES] = {
+    "bodies", "facets",       "pairs",       "integrate", "halo",       "watch",
+    "search", "redistribute", "repartition", "sample",    "checkpoint",
+};
 
 struct phase {
     double least, mean, most; /* over ranks, summed over rows [s] */
@@ -183,11 +184,12 @@ static void print_counts(const struct stats *stats)
     print_events(stats, "searches", "searches", "search");
     print_events(stats, "prunes", "prunings of the list", NULL);
     print_events(stats, "redistributions", "redistributions, high level", "redistribute");
-    print_events(stats, "repartitions", "redistributions, low level", NULL);
+    print_events(stats, "repartitions", "redistributions, low level", "repartition");
     print_events(stats, "migrated", "spheres that changed rank", NULL);
     printf("both levels of redistribution together took %.3f s, %.2f %% of the time\n",
-           phase_most(stats, "redistribute"),
-           share(phase_most(stats, "redistribute"), stats->wall));
+           phase_most(stats, "redistribute") + phase_most(stats, "repartition"),
+           share(phase_most(stats, "redistribute") + phase_most(stats, "repartition"),
+                 stats->wall));
     printf("on a rank, over the samples:\n");
     print_value(stats, "  spheres owned",
                 (const char *const[3]){"owned.min", "owned.mean", "owned.max"}, 1, "");

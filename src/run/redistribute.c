@@ -192,6 +192,7 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
     const bool lost = balance_is_lost(&sim->balance, sim->comm, job->decomposition.imbalance);
     if (!has_fixed_grid(sim) && (lost || is_multiple(sim->step, job->force.repartition_every)))
         repartition(sim);
+    runtime_end(&sim->runtime, RUNTIME_REPARTITION);
     const bool moves = sim->comm->n_ranks > 1 || renew || removed != NULL;
     update_subdomains(sim, moves, renew, removed, &sim->contacts);
     runtime_end(&sim->runtime, RUNTIME_REDISTRIBUTE);

@@ -19,7 +19,8 @@ enum runtime_phase {
     RUNTIME_HALO,
     RUNTIME_WATCH,
     RUNTIME_SEARCH,
-    RUNTIME_REDISTRIBUTE,
+    RUNTIME_REDISTRIBUTE, /* the high level: migration, ghosts */
+    RUNTIME_REPARTITION,  /* the low level: measuring balance, cutting anew */
     RUNTIME_SAMPLE,
     RUNTIME_CHECKPOINT,
     RUNTIME_N_PHASES,
