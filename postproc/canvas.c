@@ -378,13 +378,9 @@ double canvas_text_width(double height, const char *text)
     return n > 0 ? dot_size(height) * (FONT_ADVANCE * (double)n - 2.0) : 0.0;
 }
 
-void canvas_text(struct canvas *canvas, double x, double y, double height,
-                 enum canvas_anchor anchor, struct colours_rgb colour, const char *text)
+static void draw_glyphs(struct canvas *canvas, double left, double y, double dot, double width,
+                        struct colours_rgb colour, const char *text)
 {
-    const double dot = dot_size(height), width = canvas_text_width(height, text);
-    double left = anchor == CANVAS_LEFT     ? x
-                  : anchor == CANVAS_MIDDLE ? x - 0.5 * width
-                                            : x - width;
     for (; *text != '\0'; text++, left += dot * FONT_ADVANCE) {
         struct font_stroke strokes[FONT_STROKES_MAX];
         const int n = font_strokes(*text, strokes);
@@ -393,9 +389,22 @@ void canvas_text(struct canvas *canvas, double x, double y, double height,
                                  y + dot * ((double)strokes[k].y[0] - 6.0)};
             const double b[2] = {left + dot * (double)strokes[k].x[1],
                                  y + dot * ((double)strokes[k].y[1] - 6.0)};
-            canvas_stroke(canvas, a, b, 0.95 * dot, colour);
+            canvas_stroke(canvas, a, b, width, colour);
         }
     }
+}
+
+void canvas_text(struct canvas *canvas, double x, double y, double height,
+                 enum canvas_anchor anchor, struct colours_rgb colour, const char *text)
+{
+    static const struct colours_rgb halo = {0.95f, 0.955f,
+                                            0.96f}; /* where spheres lie behind */
+    const double dot = dot_size(height), width = canvas_text_width(height, text);
+    const double left = anchor == CANVAS_LEFT     ? x
+                        : anchor == CANVAS_MIDDLE ? x - 0.5 * width
+                                                  : x - width;
+    draw_glyphs(canvas, left, y, dot, 2.8 * dot, halo, text);
+    draw_glyphs(canvas, left, y, dot, 0.95 * dot, colour, text);
 }
 
 /* -------------------------------------------------------------------------------- the image */

@@ -180,12 +180,25 @@ double *content_doubles(const struct content *content, const struct content_item
                      (size_t)(item->n_rows * item->width) * sizeof(double));
 }
 
-static hid_t text_type(size_t length)
+/* The type of an item as the file has it; negative when it cannot be opened. */
+static hid_t stored_type(const struct content *content, const char *object,
+                         const char *attribute)
 {
-    const hid_t type = H5Tcopy(H5T_C_S1);
-    H5Tset_size(type, length);
-    H5Tset_strpad(type, H5T_STR_NULLPAD);
-    H5Tset_cset(type, H5T_CSET_UTF8);
+    hid_t type = -1;
+    if (attribute != NULL) {
+        const hid_t found =
+            H5Aopen_by_name(content->file, object, attribute, H5P_DEFAULT, H5P_DEFAULT);
+        if (found >= 0) {
+            type = H5Aget_type(found);
+            H5Aclose(found);
+        }
+    } else {
+        const hid_t set = H5Dopen2(content->file, object, H5P_DEFAULT);
+        if (set >= 0) {
+            type = H5Dget_type(set);
+            H5Dclose(set);
+        }
+    }
     return type;
 }
 
@@ -193,19 +206,25 @@ char *content_text(const struct content *content, const struct content_item *ite
 {
     if (item->kind != CONTENT_TEXT)
         return NULL;
-    const hid_t type = text_type((size_t)item->width);
-    char *text = read_item(content, item, type, (size_t)item->width + 1);
-    H5Tclose(type);
+    const char *at = strchr(item->path, '@');
+    char *object = at != NULL ? array_format("%.*s", (int)(at - item->path), item->path)
+                              : array_string(item->path);
+    const hid_t type = stored_type(content, object, at != NULL ? at + 1 : NULL);
+    char *text = type >= 0 ? read_item(content, item, type, (size_t)item->width + 1) : NULL;
+    if (type >= 0)
+        H5Tclose(type);
+    free(object);
     return text;
 }
 
 char *content_note(const struct content *content, const char *object, const char *name)
 {
-    enum { NOTE_MAX = 256 };
-    char *text = array_allocate(NOTE_MAX, 1);
-    const hid_t type = text_type(NOTE_MAX - 1);
-    if (!read_attribute(content, object, name, type, text))
+    const hid_t type = stored_type(content, object, name);
+    const bool fits = type >= 0 && kind_of(type) == CONTENT_TEXT;
+    char *text = array_allocate(fits ? H5Tget_size(type) + 1 : 1, 1);
+    if (fits && !read_attribute(content, object, name, type, text))
         text[0] = '\0';
-    H5Tclose(type);
+    if (type >= 0)
+        H5Tclose(type);
     return text;
 }

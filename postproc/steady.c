@@ -6,6 +6,7 @@
 
 static const double SHARE_LEAST = 0.2; /* of the flow's time that a window must cover */
 static const double ENDS_FAR = 3.0;    /* standard deviations */
+static const double RATE_LEAST = 2.0;  /* half widths of the interval */
 static const double CORRELATED = 0.4;  /* between neighbouring batches */
 
 struct batches {
@@ -205,5 +206,11 @@ struct steady steady_find(int n, const double *time, const double *total)
                            total_at(n, time, total, batches.begin + i * batches.length)) /
                           batches.length;
     search_windows(&steady, &batches);
+    if (steady.found && !(fabs(steady.rate) >= RATE_LEAST * steady.half_width)) {
+        steady.found = false;
+        snprintf(steady.why, sizeof steady.why,
+                 "the rate scatters too much: %.3g +- %.2g in the best window", steady.rate,
+                 steady.half_width);
+    }
     return steady;
 }

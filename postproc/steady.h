@@ -12,6 +12,7 @@
  * batches and covers enough of the flow.  The batch at either end is dropped: the end of a ramp
  * may hide in its noise.  The mean rate comes with a 95 % interval from the batch means and
  * Student's t; where neighbouring batches are still correlated, they are merged in pairs first.
+ * A rate below twice its half-width counts as none.
  *
  * Drawbacks: choosing the longest of many windows makes the test a little kinder than 5 %; a
  * slow drift below the noise is not seen.  The interval speaks of this one flow, not of other
