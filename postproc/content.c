@@ -9,6 +9,7 @@
 #include "base/array.h"
 
 enum { TEXT_MAX = 1 << 28 };
+static const double VALUES_MAX = 0x1p33; /* of a data set: more is not ours */
 
 static enum content_kind kind_of(hid_t type)
 {
@@ -28,8 +29,13 @@ static void add_item(struct content *content, char *path, hid_t type, hid_t spac
     hsize_t sizes[H5S_MAX_RANK] = {1};
     const int n_sizes = H5Sget_simple_extent_dims(space, sizes, NULL);
     struct content_item item = {path, kind_of(type), n_sizes > 0 ? (int64_t)sizes[0] : 1, 1};
-    for (int k = 1; k < n_sizes; k++)
-        item.width *= (int64_t)sizes[k];
+    double n_values = (double)item.n_rows;
+    for (int k = 1; k < n_sizes; k++) {
+        n_values *= (double)sizes[k];
+        item.width = n_values < VALUES_MAX ? item.width * (int64_t)sizes[k] : 1;
+    }
+    if (!(n_values < VALUES_MAX))
+        item.kind = CONTENT_OTHER;
     if (item.kind == CONTENT_TEXT && item.n_rows == 1)
         item.width = (int64_t)H5Tget_size(type);
     else if (item.kind == CONTENT_TEXT)
