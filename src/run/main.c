@@ -114,12 +114,22 @@ static int command(const struct comm *comm, const struct options *options)
     }
 }
 
+/* The bits rest on gradual underflow and rounding to nearest; a library or a launcher could have
+ * switched either off. */
+static void check_arithmetic(void)
+{
+    const volatile double small = 0x1p-1020, one = 1.0, half_unit = 0x1p-53;
+    CHECK(small * 0x1p-10 > 0.0, "the processor flushes small numbers to zero");
+    CHECK(one + half_unit == 1.0 && one - 0.75 * half_unit < 1.0, "rounding is not to nearest");
+}
+
 int main(int argc, char **argv)
 {
     COMM_CHECK(MPI_Init(&argc, &argv));
     const struct comm comm = comm_world();
     report_init(comm.rank == 0);
     control_install();
+    check_arithmetic();
     struct options options;
     int status = REPORT_BAD_INPUT;
     if (options_read(&options, argc, argv))
