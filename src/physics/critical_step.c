@@ -18,12 +18,17 @@ double critical_step_hertz_duration(double mass, double radius, double young, do
            elementary_exp(0.2 * elementary_log(mass * mass / (radius * young * young * speed)));
 }
 
+/* Compares quotients, which are correctly rounded; products with powers of ten would make 11 of
+ * 12. */
 double critical_step_round_down(double x)
 {
     double scale = 1.0;
-    while (x * scale < 10.0)
+    while (10.0 / scale > x)
         scale *= 10.0;
-    while (x * scale >= 100.0)
+    while (100.0 / scale <= x)
         scale /= 10.0;
-    return (double)(int)(x * scale) / scale;
+    double digits = (double)(int)(x * scale) + 1.0;
+    while (digits / scale > x)
+        digits -= 1.0;
+    return digits / scale;
 }
