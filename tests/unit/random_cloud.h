@@ -5,6 +5,8 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "model/sphere.h"
+
 struct cloud_random {
     uint64_t state;
 };
@@ -50,6 +52,27 @@ static inline void cloud_place(struct cloud_random *random, double (*placed)[4],
         if (attempt % 50 == 0)
             s[3] *= 0.9;
     }
+}
+
+/* Appends an owned sphere with this place; the rest is zero, or what `id` says. */
+static inline int cloud_add(struct spheres *spheres, int64_t id, const double *x, double radius)
+{
+    const int i = spheres->n_owned++;
+    spheres->n_all = spheres->n_owned;
+    spheres_reserve(spheres, spheres->n_owned);
+    spheres->motion[i] = (struct sphere_row){{x[0], x[1], x[2], radius, 0.0, 0.0, 0.0, radius}};
+    spheres->spin[i] = (struct sphere_row){{0.0}};
+    spheres->force[i] = (struct sphere_row){{0.0}};
+    spheres->id[i] = id;
+    spheres->order_cell[i] = id * 7919 % 23;
+    spheres->material[i] = 0;
+    spheres->group[i] = (int32_t)(id % 3);
+    spheres->sides[i] = id % 5;
+    spheres->dissipated_friction[i] = 0.5 * (double)id;
+    spheres->dissipated_damping[i] = 0.25 * (double)id;
+    spheres->dissipated_tangential[i] = 0.125 * (double)id;
+    spheres->allowance[i] = 0.0;
+    return i;
 }
 
 #endif
