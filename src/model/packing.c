@@ -25,20 +25,25 @@ enum column {
 };
 enum { N_COLUMNS = 8, CELLS_MAX = 32, LINE_MAX_SIZE = 4096 };
 
+/* Places and speeds beyond this are beyond any use; as in job files [m], [m/s]. */
+static const double FAR = 1e6;
+
 static const char *const COLUMN_NAMES[N_COLUMNS] = {"x_m",      "y_m",    "z_m",    "radius_m",
                                                     "material", "vx_m_s", "vy_m_s", "vz_m_s"};
 
 struct reader {
     const char *path;
     int line;
+    const char *start; /* of the line */
     int n_cells;
     int column[CELLS_MAX]; /* which column a cell of a row is; -1: none of ours */
     char **why;
 };
 
-static bool complain(struct reader *reader, int cell, const char *what)
+static bool complain(struct reader *reader, const char *at, const char *what)
 {
-    *reader->why = array_format("%s:%d:%d: %s", reader->path, reader->line, cell + 1, what);
+    const int column = (int)(at - reader->start) + 1;
+    *reader->why = array_format("%s:%d:%d: %s", reader->path, reader->line, column, what);
     return false;
 }
 
@@ -72,19 +77,19 @@ static bool read_header(struct reader *reader, char *line)
         }
     }
     if ((seen & 7) != 7)
-        return complain(reader, 0,
+        return complain(reader, line,
                         "the header names no places; columns x_m,y_m,z_m are expected");
     return true;
 }
 
-static bool read_number(struct reader *reader, int cell, const char *text, double *value)
+static bool read_number(struct reader *reader, const char *text, double *value)
 {
     char *end;
-    errno = 0;
     *value = strtod(text, &end);
     const bool whole = end != text && end[strspn(end, " \t")] == '\0';
-    if (!whole || !(*value - *value == 0.0))
-        return complain(reader, cell, "this is no number; a finite number is expected");
+    if (!whole || !(*value >= -FAR && *value <= FAR))
+        return complain(reader, text,
+                        "this is no number between -1e6 and 1e6; one is expected");
     return true;
 }
 
@@ -94,7 +99,7 @@ static bool read_row(struct reader *reader, const struct job *job, char *line,
     char *cells[CELLS_MAX];
     if (split(line, cells) != reader->n_cells)
         return complain(
-            reader, 0,
+            reader, line,
             "this row has another number of cells than the header; as many are expected");
     double *const targets[N_COLUMNS] = {
         &sphere->position.x, &sphere->position.y, &sphere->position.z, &sphere->radius, NULL,
@@ -107,14 +112,15 @@ static bool read_row(struct reader *reader, const struct job *job, char *line,
                 sphere->material =
                     strcmp(job->materials[m].name, cells[c]) == 0 ? m : sphere->material;
             if (sphere->material < 0)
-                return complain(reader, c,
+                return complain(reader, cells[c],
                                 "unknown material; one of the job's materials is expected");
-        } else if (column >= 0 && !read_number(reader, c, cells[c], targets[column])) {
+        } else if (column >= 0 && !read_number(reader, cells[c], targets[column])) {
             return false;
         }
     }
     if (!(sphere->radius > 0.0))
-        return complain(reader, 0, "the radius is not positive; a length above 0 is expected");
+        return complain(reader, line,
+                        "the radius is not positive; a length above 0 is expected");
     return true;
 }
 
@@ -124,6 +130,7 @@ static bool read_rows(struct packing *packing, const struct job *job, FILE *file
     const struct job_spheres *group = packing->group;
     int64_t capacity = 0;
     char line[LINE_MAX_SIZE];
+    reader->start = line;
     while (fgets(line, sizeof line, file) != NULL) {
         reader->line++;
         if (reader->line == 1) {
@@ -145,7 +152,7 @@ static bool read_rows(struct packing *packing, const struct job *job, FILE *file
     }
     if (packing->n == 0)
         return complain(
-            reader, 0,
+            reader, line,
             "there are no spheres in it; a header and at least one row are expected");
     return true;
 }
