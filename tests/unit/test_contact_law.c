@@ -8,6 +8,8 @@
 #include <math.h>
 
 #include "base/vec3.h"
+#include "job/job.h"
+#include "model/material.h"
 #include "model/restitution.h"
 #include "physics/contact_law.h"
 
@@ -346,6 +348,31 @@ TEST(apart_nothing_remains)
         EXPECT(result.tangential[x] == 0.0);
     for (int k = 0; k < CONTACT_LAW_HISTORY; k++)
         EXPECT(history[k] == 0.0 && !signbit(history[k]));
+}
+
+/* The table of pairs is symmetric, says what the formulas say, and is zero where the job is silent. */
+TEST(materials_make_pairs)
+{
+    struct job_material list[] = {{NULL, 2800.0, 48e9, 0.20}, {NULL, 7000.0, 100e9, 0.25}};
+    struct job_pair asked[] = {{0, 0, 0.3, 0.5}, {0, 1, 0.4, 1.0}};
+    const struct job job = {.n_materials = 2, .materials = list, .n_pairs = 2, .pairs = asked};
+    struct materials materials;
+    materials_build(&materials, &job);
+
+    const struct impact impact = {glass, false, 0.01, 0.3, 0.5, 1.0, 0, 0, 1, 0};
+    const struct material_pair same = pair_of(&impact), *made = materials.pairs;
+    EXPECT_NEAR(made[0].normal / same.normal, 1.0, 1e-14);
+    EXPECT_NEAR(made[0].tangential / same.tangential, 1.0, 1e-14);
+    EXPECT_NEAR(made[0].damping / same.damping, 1.0, 1e-14);
+    EXPECT_NEAR(made[0].damping_ratio / same.damping_ratio, 1.0, 1e-14);
+    EXPECT(made[0].friction == 0.3 && made[1].friction == 0.4);
+    EXPECT(memcmp(&made[1], &made[2], sizeof *made) == 0);
+    EXPECT_NEAR(made[1].normal, 4.0 / 3.0 / (0.96 / 48e9 + 0.9375 / 100e9), 1.0);
+    EXPECT_NEAR(made[1].tangential, 8.0 / (1.8 / 20e9 + 1.75 / 40e9), 1.0);
+    EXPECT(made[1].damping == 0.0);
+    EXPECT(made[3].normal == 0.0 && made[3].tangential == 0.0);
+    EXPECT(materials.density[1] == 7000.0 && materials.poisson[1] == 0.25);
+    materials_clear(&materials);
 }
 
 int main(int argc, char **argv)

@@ -4,8 +4,8 @@
  */
 #define pair_kernel_blocks_v4 wide_blocks /* beside the library's own */
 #define PAIR_KERNEL_ISA       4
-#pragma GCC diagnostic ignored                                                                 \
-    "-Wpsabi" /* everything is inlined; nothing passes such vectors */
+/* Everything is inlined; nothing passes such vectors. */
+#pragma GCC diagnostic ignored "-Wpsabi"
 #include "contact/pair_kernel_blocks.c"
 
 #include "check.h"
