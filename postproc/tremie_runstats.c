@@ -193,14 +193,12 @@ static void print_counts(const struct stats *stats)
     printf("on a rank, over the samples:\n");
     print_value(stats, "  spheres owned",
                 (const char *const[3]){"owned.min", "owned.mean", "owned.max"}, 1, "");
-    print_value(stats, "  ghosts", (const char *const[3]){NULL, "ghosts.mean", "ghosts.max"}, 1,
-                "");
+    print_value(stats, "  ghosts (external)",
+                (const char *const[3]){NULL, "ghosts.mean", "ghosts.max"}, 1, "");
     print_value(stats, "  internal", (const char *const[3]){NULL, "internal.mean", NULL}, 1,
                 "");
     print_value(stats, "  interfacial", (const char *const[3]){NULL, "interfacial.mean", NULL},
                 1, "");
-    print_value(stats, "  external", (const char *const[3]){NULL, "external.mean", NULL}, 1,
-                "");
     print_value(stats, "  candidates", (const char *const[3]){NULL, "candidates.mean", NULL}, 1,
                 "");
     print_value(stats, "  pairs in the inner list",
@@ -289,9 +287,9 @@ static void print_speed_up(int n, struct stats *runs)
 
 static const char *const summed[] = {"searches", "prunes", "redistributions", "repartitions",
                                      "migrated"};
-static const char *const averaged[] = {"imbalance",       "ghosts.mean",      "owned.mean",
-                                       "internal.mean",   "interfacial.mean", "external.mean",
-                                       "candidates.mean", "contacts.mean",    "memory.mean"};
+static const char *const averaged[] = {"imbalance",     "ghosts.mean",      "owned.mean",
+                                       "internal.mean", "interfacial.mean", "candidates.mean",
+                                       "contacts.mean", "memory.mean"};
 enum {
     N_SUMMED = sizeof summed / sizeof *summed,
     N_AVERAGED = sizeof averaged / sizeof *averaged
