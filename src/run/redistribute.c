@@ -149,8 +149,7 @@ static void search(struct simulation *sim, const int *moved, bool some_left_run)
     spheres_pad(spheres);
     candidates_search(&sim->candidates, spheres, all_pairs);
     prune(sim, moved);
-    if (moved != NULL)
-        restore_arrivals(sim, some_left_run);
+    restore_arrivals(sim, some_left_run);
     facet_contacts_search(&sim->facets, spheres, &sim->bodies, sim->body_allowance, all_pairs);
     sections_search(&sim->sections, spheres);
     for (int i = 0; i < spheres->n_owned; i++) {
