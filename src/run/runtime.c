@@ -7,6 +7,7 @@
 #include "base/comm.h"
 #include "base/report.h"
 #include "base/timer.h"
+#include "domain/boxes.h"
 
 static const char *const PHASE_NAMES[RUNTIME_N_PHASES] = {
     "bodies", "facets",       "pairs",       "integrate", "halo",       "watch",
@@ -52,17 +53,43 @@ static void add_columns(struct series *table)
     series_add_column(table, "bytes", "resident memory a rank, largest", "memory.max");
 }
 
+static void add_box_columns(struct series *table)
+{
+    static const char axes[] = "xyz";
+    series_add_column(table, "1", "steps done", "step");
+    series_add_column(table, "1", "rank that owns the box", "rank");
+    for (int k = 0; k < 3; k++)
+        series_add_column(table, "m", "least coordinate, -infinity where the box is open",
+                          "low_%c", axes[k]);
+    for (int k = 0; k < 3; k++)
+        series_add_column(table, "m", "end, infinity where the box is open", "high_%c",
+                          axes[k]);
+}
+
+void runtime_subdomains(struct runtime *runtime, const struct boxes *boxes, int64_t step)
+{
+    for (int q = 0; q < boxes->n_ranks; q++) {
+        const double *low = boxes->low[q], *high = boxes->high[q];
+        const double row[] = {(double)step, q,       low[0],  low[1],
+                              low[2],       high[0], high[1], high[2]};
+        series_add_row(&runtime->subdomains, row);
+    }
+}
+
 void runtime_init(struct runtime *runtime, int64_t step)
 {
     *runtime = (struct runtime){.row_step = step, .imbalance = 1.0};
     runtime->started = runtime->row_started = runtime->mark = timer_now();
     series_init(&runtime->table, "runtime");
     add_columns(&runtime->table);
+    series_init(&runtime->subdomains, "subdomains");
+    add_box_columns(&runtime->subdomains);
 }
 
 void runtime_clear(struct runtime *runtime)
 {
     series_clear(&runtime->table);
+    series_clear(&runtime->subdomains);
 }
 
 void runtime_begin(struct runtime *runtime)

@@ -9,6 +9,7 @@
 
 #include "store/series.h"
 
+struct boxes;
 struct comm;
 
 enum runtime_phase {
@@ -40,7 +41,8 @@ struct runtime {
     int64_t searches, prunes, redistributions, repartitions, migrated,
         particle_steps; /* since the last row */
     double imbalance;
-    struct series table; /* on rank 0 */
+    struct series table;      /* on rank 0 */
+    struct series subdomains; /* boxes of all ranks at each save, on rank 0 */
 };
 
 void runtime_init(struct runtime *runtime, int64_t step);
@@ -52,6 +54,8 @@ void runtime_end(struct runtime *runtime, enum runtime_phase phase);
 /* Adds a row and starts counting anew.  Collective. */
 void runtime_row(struct runtime *runtime, const struct comm *comm, int64_t step, double time,
                  const struct runtime_sizes *sizes);
+/* Adds the boxes of all ranks to the table of subdomains.  Local, on rank 0. */
+void runtime_subdomains(struct runtime *runtime, const struct boxes *boxes, int64_t step);
 /* Own resident memory [bytes]. */
 double runtime_memory(void);
 

@@ -248,11 +248,14 @@ static int write_series(struct simulation *sim, const struct run_folder *folder)
     if (sim->comm->rank != 0)
         return REPORT_FINISHED;
     char *path = run_folder_series_path(folder, sim->step);
-    const struct series *const tables[] = {&sim->observe.table, &sim->runtime.table};
-    const int status = series_write_segment(path, sim->job->title, 2, tables);
+    const struct series *const tables[] = {&sim->observe.table, &sim->runtime.table,
+                                           &sim->runtime.subdomains};
+    runtime_subdomains(&sim->runtime, &sim->boxes, sim->step);
+    const int status = series_write_segment(path, sim->job->title, 3, tables);
     if (status == REPORT_FINISHED) {
         series_clear_rows(&sim->observe.table);
         series_clear_rows(&sim->runtime.table);
+        series_clear_rows(&sim->runtime.subdomains);
     }
     free(path);
     return status;

@@ -43,6 +43,9 @@ static void remove_leavers(struct simulation *sim)
     free(removed);
 }
 
+_Static_assert((int)CONTACT_AHEAD >= (int)PAIR_KERNEL_AHEAD,
+               "lists hold what kernels look ahead");
+
 static void pair_forces(struct simulation *sim)
 {
     struct contact_list *list = &sim->contacts.now;
