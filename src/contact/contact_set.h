@@ -4,8 +4,7 @@
  * A contact is an entry (first, second) of the inner list, first before second in canonical
  * order, sorted by it over owned spheres and ghosts together; at least one of the two is owned.
  * History lies beside it, one array a lane:
- *   0..2 tangential force, as felt by the second sphere's surface [N] (sign: see
- *   physics/contact_law.h)
+ *   0..2 tangential spring force that the second exerts on the first [N]
  *   3    contact radius of the last step [m]; > 0 exactly when the two touched
  *   4    normal relative velocity of the last step [m/s]
  * A contact that does not touch holds +0.0 in all lanes.
