@@ -32,6 +32,7 @@ struct drive {
     const char *job_text;
     struct run_folder folder; /* open on rank 0 */
     bool resumes;
+    bool ended; /* nothing is left to do */
     struct simulation sim;
     int64_t first_step; /* of this process */
     double started, chores_at, line_at;
@@ -146,6 +147,21 @@ static int resume(struct drive *drive, bool *found)
     return *found || n == 0 ? REPORT_FINISHED : status;
 }
 
+/* Is there nothing left to do?  Only with the rows of the last instant has a run ended: it may
+ * have been killed after its last checkpoint. */
+static bool has_ended(const struct drive *drive)
+{
+    const struct simulation *sim = &drive->sim;
+    int ended = sim->step > sim->n_steps;
+    if (drive->comm->rank == 0 && sim->step == sim->n_steps) {
+        char *path = run_folder_series_path(&drive->folder, sim->n_steps + 1);
+        ended = access(path, F_OK) == 0;
+        free(path);
+    }
+    comm_broadcast(drive->comm, &ended, sizeof ended);
+    return ended != 0;
+}
+
 /* The simulation, from a named checkpoint, the newest good one, or the scene. */
 static int prepare(struct drive *drive)
 {
@@ -165,7 +181,8 @@ static int prepare(struct drive *drive)
     if (found)
         report_say("resumes at step %lld (%.6g s)", (long long)drive->sim.step,
                    (double)drive->sim.step * drive->sim.dt);
-    if (drive->comm->rank == 0)
+    drive->ended = found && drive->options->restart == NULL && has_ended(drive);
+    if (drive->comm->rank == 0 && !drive->ended)
         status = run_folder_rewind(&drive->folder, drive->sim.step);
     return comm_agree(drive->comm, status);
 }
@@ -252,7 +269,8 @@ static int save(struct drive *drive)
 static int loop(struct drive *drive)
 {
     struct simulation *sim = &drive->sim;
-    int64_t saved_at = sim->step > 0 ? sim->step : -1;
+    /* What a run resumes from is there already, unless it is another run's. */
+    int64_t saved_at = sim->step > 0 && drive->options->restart == NULL ? sim->step : -1;
     int status = REPORT_FINISHED;
     while (sim->step < sim->n_steps && !sim->watch.stop_agreed &&
            sim->watch.failure == WATCH_FINE) {
@@ -329,7 +347,7 @@ int drive_run(const struct comm *comm, const struct options *options, const stru
             drive.started = timer_now();
             drive.chores_at = drive.started + CHORES_EVERY;
             drive.line_at = drive.started + LINES_EVERY;
-            if (drive.sim.step >= drive.sim.n_steps && drive.resumes)
+            if (drive.ended)
                 report_say("nothing to do: the run has reached its end");
             else
                 status = finish(&drive, loop(&drive));
