@@ -19,10 +19,11 @@
 #include "base/report.h"
 #include "canvas.h"
 #include "legend.h"
+#include "owners.h"
 #include "scene.h"
 #include "ticks.h"
 
-enum colour_by { BY_SPEED, BY_SIZE, BY_MATERIAL, BY_GROUP, BY_ID };
+enum colour_by { BY_SPEED, BY_SIZE, BY_MATERIAL, BY_GROUP, BY_RANK, BY_ID };
 enum { SIZE_LEAST = 64, SIZE_MOST = 4096, TEXT_SIZE = 160 };
 
 static const double CREASE = 0.985;   /* cosine between faces below which their edge is drawn */
@@ -44,6 +45,13 @@ struct wishes {
 
 /* ---------------------------------------------------------------------------------- colours */
 
+/* Kinds are told apart by colours; the rest is a number on a scale. */
+static bool is_kind(int by)
+{
+    return by == BY_MATERIAL || by == BY_GROUP || by == BY_RANK;
+}
+
+/* What a sphere shows by itself. */
 static double value_of(const struct scene *scene, enum colour_by by, int i)
 {
     const struct spheres *spheres = &scene->spheres;
@@ -57,10 +65,29 @@ static double value_of(const struct scene *scene, enum colour_by by, int i)
         return spheres->material[i];
     case BY_GROUP:
         return spheres->group[i];
+    case BY_RANK:
     case BY_ID:
         break;
     }
     return (double)spheres->id[i];
+}
+
+/* The value of each sphere, *values, which the caller frees.  Returns a REPORT_ status. */
+static int find_values(const struct scene *scene, const struct wishes *wishes, double **values)
+{
+    const int n = scene->spheres.n_owned;
+    int status = REPORT_FINISHED;
+    *values = array_allocate((size_t)n, sizeof **values);
+    for (int i = 0; i < n; i++)
+        (*values)[i] = value_of(scene, (enum colour_by)wishes->by, i);
+    if (wishes->by != BY_RANK)
+        return status;
+    int *owner = array_allocate((size_t)n, sizeof *owner);
+    status = owners_find(owner, &scene->spheres, wishes->path, scene->checkpoint.step);
+    for (int i = 0; i < n; i++)
+        (*values)[i] = owner[i];
+    free(owner);
+    return status;
 }
 
 static int compare_doubles(const void *a, const void *b)
@@ -263,7 +290,7 @@ static void draw_spheres(struct canvas *canvas, const struct camera *camera,
                          const double *values, const double range[2])
 {
     const struct spheres *spheres = &scene->spheres;
-    const bool kinds = wishes->by == BY_MATERIAL || wishes->by == BY_GROUP;
+    const bool kinds = is_kind(wishes->by);
     double sum = 0.0;
     for (int i = 0; i < spheres->n_owned; i++) {
         const double *x = sphere_position(spheres, i);
@@ -297,9 +324,9 @@ static void draw_legend(struct canvas *canvas, const struct scene *scene,
                         const struct wishes *wishes, const double *values,
                         const double range[2], double margin, double height)
 {
-    static const char *const titles[] = {"speed [m/s]", "radius [m]", "material", "group",
-                                         "id"};
-    const bool kinds = wishes->by == BY_MATERIAL || wishes->by == BY_GROUP;
+    static const char *const titles[] = {"speed [m/s]", "radius [m]", "material",
+                                         "group",       "rank",       "id"};
+    const bool kinds = is_kind(wishes->by);
     int n_kinds = 0;
     char **names = NULL;
     for (int i = 0; kinds && i < scene->spheres.n_owned; i++)
@@ -317,7 +344,8 @@ static void draw_legend(struct canvas *canvas, const struct scene *scene,
     free(names);
 }
 
-static void draw(struct canvas *canvas, const struct scene *scene, const struct wishes *wishes)
+static void draw(struct canvas *canvas, const struct scene *scene, const struct wishes *wishes,
+                 const double *values)
 {
     const int n = scene->spheres.n_owned;
     const double margin = 0.035 * canvas->height;
@@ -329,9 +357,7 @@ static void draw(struct canvas *canvas, const struct scene *scene, const struct 
                                          canvas->width - margin - 11.0 * height,
                                          canvas->height - margin - 2.5 * height},
                    balls.n, balls.list);
-    double *values = array_allocate((size_t)n, sizeof *values), range[2];
-    for (int i = 0; i < n; i++)
-        values[i] = value_of(scene, (enum colour_by)wishes->by, i);
+    double range[2];
     find_range(wishes, n, values, range);
     draw_spheres(canvas, &camera, scene, wishes, values, range);
     if (!wishes->no_bodies)
@@ -339,16 +365,15 @@ static void draw(struct canvas *canvas, const struct scene *scene, const struct 
                     n > 0 ? sphere_radius(&scene->spheres, 0) : 0.0);
     draw_captions(canvas, scene, margin, height);
     draw_legend(canvas, scene, wishes, values, range, margin, height);
-    free(values);
     free(balls.list);
 }
 
-static int render(const struct scene *scene, const struct wishes *wishes)
+static int render(const struct scene *scene, const struct wishes *wishes, const double *values)
 {
     struct canvas canvas;
     struct image image;
     canvas_init(&canvas, wishes->width, wishes->height);
-    draw(&canvas, scene, wishes);
+    draw(&canvas, scene, wishes, values);
     canvas_develop(&canvas, &image);
     canvas_clear(&canvas);
     const int status = image_write_png(&image, wishes->out);
@@ -404,7 +429,11 @@ static int show(struct wishes *wishes)
     struct scene scene;
     int status = scene_read(&scene, &comm, wishes->path);
     if (status == REPORT_FINISHED) {
-        status = render(&scene, wishes);
+        double *values;
+        status = find_values(&scene, wishes, &values);
+        if (status == REPORT_FINISHED)
+            status = render(&scene, wishes, values);
+        free(values);
         scene_clear(&scene);
     }
     MPI_Finalize();
@@ -413,7 +442,8 @@ static int show(struct wishes *wishes)
 
 int main(int argc, char **argv)
 {
-    static const char *const colours[] = {"speed", "size", "material", "group", "id", NULL};
+    static const char *const colours[] = {"speed", "size", "material", "group",
+                                          "rank",  "id",   NULL};
     struct wishes wishes = {.size = "1200x900",
                             .azimuth = (double)NAN,
                             .elevation = (double)NAN,
@@ -439,7 +469,8 @@ int main(int argc, char **argv)
         "tremie-render",
         "CHECKPOINT -o FILE.png [options]",
         "Draws a checkpoint, or the newest one of a run's folder: spheres, bodies, and what the colours\n"
-        "mean.\n"
+        "mean.  Ranks are those in whose subdomains the spheres lay when the run wrote the checkpoint,\n"
+        "as the series in its folder tell.\n"
         "\n"
         "Exit status: 0 drawn; 2 bad arguments; 4 a file cannot be read or written.\n",
         sizeof entries / sizeof *entries,

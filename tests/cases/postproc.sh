@@ -96,7 +96,7 @@ try 2 "$bin/tremie-render" one
 says "error: there is no name for the picture; give -o FILE.png"
 try 2 "$bin/tremie-render" one -o x.png --size 10x10
 try 2 "$bin/tremie-render" one -o x.png --color mood
-says "choose one of speed, size, material, group, id"
+says "choose one of speed, size, material, group, rank, id"
 try 4 "$bin/tremie-render" one -o nowhere/x.png
 says "error: cannot write nowhere/x.png: No such file or directory; check the folder"
 result "command lines"
@@ -180,7 +180,7 @@ size_of()
     od -An -t u1 -j 16 -N 8 "$1" | awk '{ print $3 * 256 + $4 "x" $7 * 256 + $8 }'
 }
 
-for by in speed size material group id; do
+for by in speed size material group rank id; do
     try 0 "$bin/tremie-render" "$one" -o "$by.png" --color "$by" --size 320x240
     [ "$(size_of "$by.png")" = 320x240 ] || why+=" $by.png is $(size_of "$by.png");"
 done
@@ -191,4 +191,15 @@ cmp -s front.png top.png && why+=" another view shows the same;"
 try 0 "$bin/tremie-render" one -o near.png --azimuth 40 --elevation 30 --zoom 2 --range 0:1 --size 320x240
 try 4 "$bin/tremie-render" cut.h5 -o cut.png
 [ ! -e cut.png ] || why+=" a picture of a damaged file;"
+try 0 "$bin/tremie-render" two -o ranks.png --color rank --size 320x240
+try 0 "$bin/tremie-render" "$two" -o same.png --color rank --size 320x240
+cmp -s ranks.png same.png || why+=" the run and its newest checkpoint show different ranks;"
+cmp -s ranks.png rank.png && why+=" two ranks look like one;"
+cp "$two" lone.h5
+try 4 "$bin/tremie-render" lone.h5 -o none.png --color rank
+says "error: cannot tell whose spheres lone.h5 holds: there are no series in"
+mkdir -p bare_copy && cp -r two/checkpoints bare_copy
+try 4 "$bin/tremie-render" bare_copy -o none.png --color rank
+says "error: cannot tell whose spheres bare_copy holds"
+[ ! -e none.png ] || why+=" a picture of unknown ranks;"
 result render

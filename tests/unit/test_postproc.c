@@ -13,6 +13,7 @@
 #include "../../postproc/content.h"
 #include "../../postproc/font.h"
 #include "../../postproc/image.h"
+#include "../../postproc/owners.h"
 #include "../../postproc/records.h"
 #include "../../postproc/sheet.h"
 #include "../../postproc/steady.h"
@@ -20,6 +21,7 @@
 #include "base/array.h"
 #include "base/report.h"
 #include "check.h"
+#include "model/sphere.h"
 #include "store/file.h"
 #include "store/series.h"
 
@@ -370,6 +372,52 @@ TEST(contents_are_listed)
     why = content_open(&content, "/nowhere.h5");
     EXPECT(why != NULL);
     free(why);
+}
+
+/* A save on two ranks, cut at x = 1, or on one. */
+static void add_boxes(struct series *series, double step, int n_ranks)
+{
+    for (int q = 0; q < n_ranks; q++) {
+        const double row[] = {step,
+                              q,
+                              q > 0 ? 1.0 : -(double)INFINITY,
+                              -(double)INFINITY,
+                              -(double)INFINITY,
+                              q + 1 < n_ranks ? 1.0 : (double)INFINITY,
+                              (double)INFINITY,
+                              (double)INFINITY};
+        series_add_row(series, row);
+    }
+}
+
+TEST(spheres_belong_to_the_box_they_lie_in)
+{
+    static const char *const names[] = {"step",  "rank",   "low_x",  "low_y",
+                                        "low_z", "high_x", "high_y", "high_z"};
+    static const double x[] = {0.5, 1.0, -1e9, 1e9};
+    struct spheres spheres;
+    spheres_init(&spheres);
+    spheres_reserve(&spheres, 4);
+    for (int i = 0; i < 4; i++)
+        sphere_position(&spheres, i)[0] = x[i];
+    spheres.n_owned = 4;
+    struct series series;
+    series_init(&series, "subdomains");
+    int owner[4] = {-1, -1, -1, -1};
+    EXPECT(owners_of_rows(owner, &spheres, &series, 10) == -1);
+    for (int k = 0; k < 8; k++)
+        series_add_column(&series, "1", "", "%s", names[k]);
+    add_boxes(&series, 10.0, 2);
+    add_boxes(&series, 20.0, 1);
+    EXPECT(owners_of_rows(owner, &spheres, &series, 9) == -1);
+    EXPECT(owners_of_rows(owner, &spheres, &series, 19) == 10);
+    EXPECT(owner[0] == 0 && owner[1] == 1 && owner[2] == 0 && owner[3] == 1);
+    EXPECT(owners_of_rows(owner, &spheres, &series, 20) == 20);
+    EXPECT(owner[1] == 0 && owner[3] == 0);
+    series.values[2] = 0.75; /* the first box lets go of its outer side */
+    EXPECT(owners_of_rows(owner, &spheres, &series, 10) == -2);
+    series_clear(&series);
+    spheres_clear(&spheres);
 }
 
 int main(int argc, char **argv)
