@@ -36,7 +36,7 @@ void migrate_clear(struct migrate *migrate)
 
 static void reserve(struct migrate *migrate, int n)
 {
-    if (n <= migrate->before_capacity)
+    if (migrate->id_before != NULL && n <= migrate->before_capacity)
         return;
     const size_t capacity = array_capacity((size_t)migrate->before_capacity, (size_t)n);
     free(migrate->id_before);
