@@ -1,7 +1,9 @@
 #!/bin/bash
 # timeout: 900
-# The bits are a function of the job alone: complete states at the end and in between, and series, are equal
-# for any number of ranks, any subdomains, any search and redistribution, any kernel.
+# The bits are a function of the job alone: complete states at the end and in between, and
+# series, are equal for any number of ranks, any subdomains, any search and redistribution, any
+# kernel.
+# shellcheck disable=SC2046,SC2086,SC2102 # options are words
 set -uo pipefail
 # shellcheck source=tests/cases/common.sh
 . "$(dirname "$0")/common.sh"
@@ -29,7 +31,6 @@ reference()
 every() { echo "--set testing.search_every=$1"; }
 both_levels() { echo "--set testing.redistribute_every=$1 --set testing.repartition_every=$2"; }
 all_pairs="--set testing.search=all-pairs"
-# shellcheck disable=SC2046,SC2086 # options are words
 
 # ------------------------------------------------------------------ numbers of ranks, moments of search
 for scene in heap mixed; do

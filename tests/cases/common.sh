@@ -84,7 +84,8 @@ random_spheres()
                 continue
             x[made] = c[0]; y[made] = c[1]; z[made] = c[2]; s[made] = r
             made++
-            printf "%.9f,%.9f,%.9f,%.9f,%s", c[0], c[1], c[2], r - 1e-6, rand() < 0.5 ? "ore" : "rubber"
+            printf "%.9f,%.9f,%.9f,%.9f", c[0], c[1], c[2], r - 1e-6
+            printf ",%s", rand() < 0.5 ? "ore" : "rubber"
             printf ",%.6f,%.6f,%.6f\n", 6 * rand() - 3, 6 * rand() - 3, 6 * rand() - 3
         }
     }'

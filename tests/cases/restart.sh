@@ -1,0 +1,201 @@
+#!/bin/bash
+# timeout: 900
+# Runs that are killed, stopped and taken up again on other numbers of ranks end with the bits
+# of one that nothing disturbed.
+# shellcheck disable=SC2046,SC2086 # options are words
+set -uo pipefail
+# shellcheck source=tests/cases/common.sh
+. "$(dirname "$0")/common.sh"
+
+job= # process id of a run in the background
+kill_all() { kill -KILL $(pgrep -P "$job") "$job" 2> /dev/null; }
+trap '[ -z "$job" ] || kill_all' EXIT
+
+# start RANKS OUT SCENE OPTIONS...: a run in the background.
+start()
+{
+    local ranks=$1 out=$2 scene=$3
+    shift 3
+    mpirun --oversubscribe --bind-to none -q -n "$ranks" "$bin/tremie" run "$scenes/$scene.yaml" \
+        --out "$out" "$@" > said 2>&1 < /dev/null &
+    job=$!
+}
+
+# newest RUN: the step of its newest checkpoint, 0 without one.
+newest()
+{
+    local file
+    file=$(find "$1/checkpoints" -name 'step_*.h5' 2> /dev/null | sort | tail -n 1)
+    file=${file##*step_}
+    file=${file%.h5}
+    echo $((10#${file:-0}))
+}
+
+# wait_until_after RUN STEP: until the run has a checkpoint later than that.
+wait_until_after()
+{
+    local tries=0
+    while [ "$(newest "$1")" -le "$2" ]; do
+        sleep 0.02
+        tries=$((tries + 1))
+        if [ $tries -gt $((patience * 30)) ] || ! kill -0 "$job" 2> /dev/null; then
+            why+=" no checkpoint after step $2 came in time;"
+            return
+        fi
+    done
+}
+
+# wait_for_end: its exit status; a run that does not end is killed.
+wait_for_end()
+{
+    local tries=0 status=0
+    while kill -0 "$job" 2> /dev/null; do
+        sleep 0.02
+        tries=$((tries + 1))
+        [ $tries -le $((patience * 30)) ] || kill_all
+    done
+    wait "$job" || status=$?
+    job=
+    return $status
+}
+
+pause_at_random() { sleep "0.$(printf %03d $((RANDOM % 300)))"; }
+
+# end_with SIGNAL STATUS: sends it to mpirun, which is to end so.
+end_with()
+{
+    local status=0
+    kill -"$1" "$job" 2> /dev/null || why+=" it ended before SIG$1;"
+    wait_for_end || status=$?
+    [ "$status" = "$2" ] || why+=" after SIG$1 the status is $status, not $2;"
+}
+
+# kill_ranks: all ranks at once, as if the power were gone.
+kill_ranks()
+{
+    kill -KILL $(pgrep -P "$job") 2> /dev/null || why+=" it ended before it could be killed;"
+    wait_for_end && why+=" it ended well though it was killed;"
+}
+
+# digest RUN: of all that a run has kept, its messages aside.
+digest()
+{
+    (cd "$1" && find . -type f ! -name log ! -name lock | sort | xargs sha256sum)
+}
+
+slow="--set testing.search=all-pairs --set testing.search_every=1"
+every=25 # steps between checkpoints
+
+# ------------------------------------------------------------------ killed on 3, stopped on 2, ended on 5
+# relay NAME SCENE OPTIONS...
+relay()
+{
+    local name=$1 scene=$2 at file
+    shift 2
+    set -- "$@" --set checkpoint.every.steps=$every
+    run 1 reference "$scene" "$@"
+    set -- "$@" --set checkpoint.keep=3
+    start 3 relay "$scene" "$@" $slow
+    wait_until_after relay 0
+    pause_at_random
+    kill_ranks
+    result "$name, killed on 3 ranks"
+    at=$(newest relay)
+    start 2 relay "$scene" "$@" $slow --set testing.repartition_every=3
+    wait_until_after relay "$at"
+    pause_at_random
+    end_with USR1 75
+    says "the same command resumes"
+    [ "$(newest relay)" -gt "$at" ] || why+=" there is no new checkpoint;"
+    result "$name, resumed on 2 ranks, stopped by SIGUSR1"
+    at=$(newest relay)
+    run 5 relay "$scene" "$@"
+    says "resumes at step $at "
+    [ "$(find relay/checkpoints -name '*.h5' | wc -l)" = 3 ] || why+=" not 3 checkpoints are kept;"
+    for file in reference/checkpoints/*.h5; do # those that were not kept
+        [ -e "relay/checkpoints/${file##*/}" ] || rm "$file"
+    done
+    same_run reference relay
+    result "$name, resumed on 5 ranks: the same state and series"
+    rm -rf reference relay
+}
+
+relay heap heap
+relay mixed mixed
+relay "heap with friction 10" heap --set contact.pairs.0.friction=10
+relay "mixed with friction 10, no ledger" mixed --set contact.pairs.0.friction=10 \
+    --set contact.ledger=false
+
+# ------------------------------------------------------------------ an end that is an end
+set -- --set checkpoint.every.steps=$every
+run 1 reference mixed "$@"
+run 3 run mixed "$@"
+digest run > before
+run 2 run mixed "$@"
+says "nothing to do"
+digest run | cmp -s before - || why+=" it changed what was there;"
+result "the same command after the end does nothing"
+
+# As if killed between the last checkpoint and the rows of the last instant.
+rm "$(find run/series -name 'step_*.h5' | sort | tail -n 1)"
+run 2 run mixed "$@"
+same_run reference run
+result "killed before the last rows: the same command adds them"
+rm -rf run
+
+run 2 run mixed "$@" --set time.end=0.0637
+run 3 run mixed "$@"
+rm run/checkpoints/step_000000000637.h5
+same_run reference run
+result "a longer end: the same as in one go"
+
+# ------------------------------------------------------------------ from a checkpoint of choice
+run 3 run mixed "$@" --restart run/checkpoints/step_000000000400.h5
+says "resumes at step 400 "
+says "files of steps after 400 are now in run/set_aside_"
+same_run reference run
+result "--restart FILE goes back to that state"
+run 4 other mixed "$@" --restart run/checkpoints/step_000000000600.h5
+equal reference/checkpoints/step_000000001000.h5 other/checkpoints/step_000000001000.h5
+result "--restart FILE of another folder"
+run 2 run mixed "$@" --fresh
+says "starting over: what was in run is now in run/set_aside_"
+same_run reference run
+ls run/set_aside_*/checkpoints/step_000000001000.h5 > /dev/null 2>&1 || why+=" what was there is gone;"
+result "--fresh starts over and sets aside"
+rm -rf run other
+
+# ------------------------------------------------------------------ ways to stop
+# stopped NAME: after a run in `run` has stopped, the same command comes to the same end.
+stopped()
+{
+    [ -n "$why" ] || run 3 run mixed "${options[@]}"
+    rm -f run/checkpoints/*[!05].h5 # of the stop, which the reference does not have
+    [ -n "$why" ] || equal reference run
+    [ -n "$why" ] || equal {reference,run}/checkpoints/step_000000001000.h5
+    result "$1"
+    rm -rf run
+}
+options=("$@")
+
+start 2 run mixed "$@" $slow
+wait_until_after run 0
+end_with USR2 75
+stopped "SIGUSR2"
+
+start 2 run mixed "$@" $slow
+wait_until_after run 0
+tremie 1 run "$scenes/mixed.yaml" --out run "$@" && why+=" a second run in its folder is let in;"
+says "is in use by process"
+while [ ! -e run/status ] && kill -0 "$job" 2> /dev/null; do sleep 0.05; done
+"$bin/tremie" stop run > said 2>&1 || why+=" stop gives status $?;"
+end_with CONT 75 # which does nothing to it
+stopped "tremie stop, and no second run in a folder in use"
+
+for signal in TERM INT; do
+    "$bin/tremie" run "$scenes/mixed.yaml" --out run "$@" $slow > said 2>&1 < /dev/null &
+    job=$!
+    wait_until_after run 0
+    end_with $signal 75
+    stopped "SIG$signal to a rank itself"
+done
