@@ -256,7 +256,8 @@ TEST(lattice_at_the_limit)
         struct spheres spheres;
         spheres_init(&spheres);
         for (int id = 0; id < 512; id++) {
-            const double x[3] = {0.5 * (id % 8), 0.5 * (id / 8 % 8), 0.5 * (id / 64)};
+            const int row = id / 8 % 8, layer = id / 64;
+            const double x[3] = {0.5 * (id % 8), 0.5 * row, 0.5 * layer};
             const int i = cloud_add(&spheres, id, x, 0.125);
             spheres.allowance[i] = 0.125 + (hair != 0 ? 0x1p-50 : 0.0);
         }

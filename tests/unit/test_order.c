@@ -121,7 +121,7 @@ TEST(sort_of_anything)
     struct cloud_random dice = {5};
     for (int n = 0; n <= N_KEYS; n = n < 20 ? n + 1 : 3 * n) {
         for (int k = 0; k < n; k++) {
-            const int64_t cell = (int64_t)cloud_between(&dice, 0.0, 1.0 + n / 5);
+            const int64_t cell = (int64_t)cloud_between(&dice, 0.0, 1.0 + 0.2 * n);
             keys_here[k] = (struct order_key){cell, k * 7919 % 10007, k};
         }
         sort_and_compare(keys_here, n);

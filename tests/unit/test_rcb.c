@@ -161,9 +161,10 @@ TEST(planes_of_a_lattice)
 {
     cloud.n = 12 * 10 * 10;
     for (int id = 0; id < cloud.n; id++) {
+        const int row = id / 12 % 10, layer = id / 120;
         cloud.x[id][0] = 0.22 * (id % 12);
-        cloud.x[id][1] = 0.22 * (id / 12 % 10);
-        cloud.x[id][2] = 0.22 * (id / 120);
+        cloud.x[id][1] = 0.22 * row;
+        cloud.x[id][2] = 0.22 * layer;
         cloud.weight[id] = 3;
     }
     EXPECT(imbalance() < 1.4);
@@ -219,7 +220,8 @@ TEST(even_grids)
     boxes_init(&boxes, 8);
     boxes_set_grid(&boxes, eight, low, high);
     for (int q = 0; q < 8; q++) {
-        const double x[3] = {0.25 + 0.5 * (q % 2), -0.5 + (q / 2 % 2), 2.25 + 0.5 * (q / 4)};
+        const int row = q / 2 % 2, layer = q / 4;
+        const double x[3] = {0.25 + 0.5 * (q % 2), row - 0.5, 2.25 + 0.5 * layer};
         EXPECT(boxes_owner(&boxes, x) == q);
         expect_tiles(&boxes, x);
     }
