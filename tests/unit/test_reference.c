@@ -518,7 +518,7 @@ TEST(spheres_alone_that_meet_in_the_middle)
                                 .inward = 200.0,
                                 .friction = 0.5,
                                 .rest = CALM STAY "gravity: [0, 0, 0]\norder_every: 110",
-                                .n_steps = 500};
+                                .n_steps = 350};
     const struct seen seen = compare_scene(&scene);
     EXPECT(seen.contacts > 10);
 }
@@ -565,9 +565,9 @@ TEST(forced_redistribution_and_moving_bodies)
         "  - name: press\n    material: rubber\n"
         "    geometry: {kind: plane, point: [0, 0, 0.0149], normal: [0, 0, -1], extent: 0.03}\n"
         "    motion: {velocity: [0, 0, -2], start: 0.0003, stop: 0.0025}",
-        .n_steps = 500};
+        .n_steps = 350};
     const struct seen seen = compare_scene(&scene);
-    EXPECT(seen.contacts > 20 && seen.facets > 10);
+    EXPECT(seen.contacts > 10 && seen.facets > 10);
 }
 
 TEST(spheres_that_leave_while_they_touch)
@@ -588,7 +588,7 @@ TEST(spheres_that_leave_while_they_touch)
                      "domain: {min: [-0.02, -0.02, -0.02], max: [0.0095, 0.02, 0.02], "
                      "leavers: remove}\n"
                      "testing: {repartition_every: 40}",
-        .n_steps = 450};
+        .n_steps = 390};
     const struct seen seen = compare_scene(&scene);
     EXPECT(seen.contacts > 20 && seen.left > 20);
 }
@@ -616,7 +616,7 @@ TEST(thin_fixed_slabs_without_the_ledger)
                           .spin = 500.0,
                           .friction = 0.5,
                           .rest = rest,
-                          .n_steps = 400};
+                          .n_steps = 300};
     char *text = scene_text(&scene);
     struct job job;
     read_job(&job, text);
