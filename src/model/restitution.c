@@ -7,9 +7,9 @@
  * touch on, where the contact in its own time starts with an infinite derivative.  The contact
  * ends when its force falls to zero.
  *
- * There is a closed form with exp and arcsin (THEORY.md (1.23), the tests compare with it); this
- * needs neither, so it gives the same bits everywhere.  A pair of materials costs some hundred
- * microseconds, once.
+ * There is a closed form with exp and arcsin (THEORY.md (1.23), the tests compare with it);
+ * this needs neither, so it gives the same bits everywhere.  A pair of materials costs some
+ * hundred microseconds, once.
  */
 #include "model/restitution.h"
 

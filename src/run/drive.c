@@ -292,8 +292,8 @@ static int loop(struct drive *drive)
     return status;
 }
 
-/* The rows of the last instant: its forces are computed but nothing moves any more.  A run that failed
- * keeps the rows that it has. */
+/* The rows of the last instant: its forces are computed but nothing moves any more.  A run that
+ * failed keeps the rows that it has. */
 static int finish_series(struct drive *drive)
 {
     struct simulation *sim = &drive->sim;

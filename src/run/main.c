@@ -114,8 +114,8 @@ static int command(const struct comm *comm, const struct options *options)
     }
 }
 
-/* The bits rest on gradual underflow and rounding to nearest; a library or a launcher could have
- * switched either off. */
+/* The bits rest on gradual underflow and rounding to nearest; a library or a launcher could
+ * have switched either off. */
 static void check_arithmetic(void)
 {
     const volatile double small = 0x1p-1020, one = 1.0, half_unit = 0x1p-53;

@@ -350,7 +350,8 @@ TEST(apart_nothing_remains)
         EXPECT(history[k] == 0.0 && !signbit(history[k]));
 }
 
-/* The table of pairs is symmetric, says what the formulas say, and is zero where the job is silent. */
+/* The table of pairs is symmetric, says what the formulas say, and is zero where the job is
+ * silent. */
 TEST(materials_make_pairs)
 {
     struct job_material list[] = {{NULL, 2800.0, 48e9, 0.20}, {NULL, 7000.0, 100e9, 0.25}};
