@@ -58,7 +58,7 @@ all_objects := $(library_objects) $(kernel_objects) $(main:%.c=$(BUILD)/%.o) $(t
 
 # --------------------------------------------------------------------------------------------- goals
 
-.PHONY: all hopper test lint help install clean unit_tests
+.PHONY: all hopper test bench lint help install clean unit_tests
 .DEFAULT_GOAL := all
 
 ##  make              build all programs into bin/
@@ -76,6 +76,12 @@ test:
 	@$(MAKE) --no-print-directory all unit_tests
 	@BUILD='$(BUILD)' BIN='$(BIN)' FLAVOUR='$(FLAVOUR)' CC='$(CC)' CPPFLAGS='$(CPPFLAGS)' \
 	    tests/run $(FILTER)
+
+##  make bench        measure speed on one core: a settled bed, beside LIGGGHTS where installed
+bench:
+	@config/setup test
+	@$(MAKE) --no-print-directory all
+	@BIN='$(BIN)' tests/bench/settled.sh
 
 ##  make lint         check the code's form and look for mistakes with clang-tidy and cppcheck
 lint:
