@@ -6,7 +6,8 @@ bin=$(realpath "$BIN")
 cd "$SCRATCH" || exit 1
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_mpi_yield_when_idle=1
 patience=120 # seconds that any one run may take
-[ "${FLAVOUR:-release}" = release ] || patience=600
+thorough=yes # with sanitizers nothing is quick, so less is tried
+[ "${FLAVOUR:-release}" = release ] || patience=600 thorough=
 why= # reasons why the present case fails
 
 # tremie RANKS WORDS...: runs the program and gives its status; output and messages go to `said`.
