@@ -1,5 +1,5 @@
 # What the cases that compare whole runs share; sourced by them, in SCRATCH from then on.
-# shellcheck shell=bash
+# shellcheck shell=bash disable=SC2034
 
 scenes=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/scenes
 bin=$(realpath "$BIN")
