@@ -290,7 +290,8 @@ const struct schema_key job_keys[] = {
     {"gravity", SCHEMA_NUMBER, "acceleration of gravity", .unit = "m/s2",
      .standard = "[0, 0, -9.81]", BETWEEN(-FAR, FAR), AT(struct job, gravity)},
     {"damping", SCHEMA_NUMBER,
-     "mass-proportional damping: a force of -damping x mass x velocity on every sphere",
+     "mass-proportional damping: a force of -damping x mass x velocity on every sphere, and "
+     "a moment likewise",
      .unit = "1/s", .standard = "0", BETWEEN(0.0, 1e9), AT(struct job, damping)},
     {"materials", SCHEMA_NAMED, "materials by name; those that nothing uses are left out",
      .required = true, UP_TO(1000.0), .inside = material_keys,

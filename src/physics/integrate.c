@@ -37,20 +37,21 @@ static inline void gather_spent(struct spent *spent, two v_xy, two v_z, const do
     }
 }
 
-/* What mass-proportional damping takes in a step: c m v(n)^2 dt [J]. */
-static double background_loss(const struct integrate_work *work, const double *before,
-                              const double *after, double inverse_mass)
+/* What mass-proportional damping takes in a step: c (m v(n)^2 + 2/5 m R^2 w(n)^2) dt [J]. */
+static double background_loss(const struct integrate_work *work, const double before[6],
+                              const double after[6], double inverse_mass, double radius)
 {
-    double speed2 = 0.0;
+    double speed2 = 0.0, spin2 = 0.0;
     for (int k = 0; k < 3; k++) {
-        const double v = 0.5 * (before[k] + after[k]);
+        const double v = 0.5 * (before[k] + after[k]), w = 0.5 * (before[3 + k] + after[3 + k]);
         speed2 += v * v;
+        spin2 += w * w;
     }
-    return work->damping * work->dt / inverse_mass * speed2;
+    return work->damping * work->dt / inverse_mass * (speed2 + 0.4 * radius * radius * spin2);
 }
 
 /* The two factors of v(n+1/2) = keep v(n-1/2) + push a(n) dt under mass-proportional damping c:
- * (1 - c dt/2)/(1 + c dt/2) and 1/(1 + c dt/2).
+ * (1 - c dt/2)/(1 + c dt/2) and 1/(1 + c dt/2); the same for w.
  * (5.3) */
 static inline __attribute__((always_inline)) void move_spheres(struct integrate_work *work,
                                                                struct spent *spent, double keep,
@@ -79,9 +80,11 @@ static inline __attribute__((always_inline)) void move_spheres(struct integrate_
             work->dissipated_damping[i] += force[3][1];
         }
         if (ledger && damped) {
-            const double before[3] = {motion[2][0], motion[2][1], motion[3][0]};
-            const double after[3] = {v_xy[0], v_xy[1], v_z[0]};
-            work->dissipated_damping[i] += background_loss(work, before, after, inverse_mass);
+            const double before[6] = {motion[2][0], motion[2][1], motion[3][0],
+                                      spin[2][0],   spin[2][1],   spin[3][0]};
+            const double after[6] = {v_xy[0], v_xy[1], v_z[0], w_xy[0], w_xy[1], w_z[0]};
+            work->dissipated_damping[i] +=
+                background_loss(work, before, after, inverse_mass, radius);
         }
         const two x_xy = motion[0] + v_xy * dt, x_z = motion[1] + v_z * step_z;
         motion[0] = x_xy;

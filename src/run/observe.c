@@ -97,7 +97,7 @@ static void centred_motion(const struct simulation *sim, int i, double v[3], dou
     for (int k = 0; k < 3; k++) {
         const double after =
             keep * motion[4 + k] + push * sim->dt * (force[k] * inverse_mass + g[k]);
-        const double spun = spin[4 + k] + push * sim->dt * force[4 + k] * turn;
+        const double spun = keep * spin[4 + k] + push * sim->dt * force[4 + k] * turn;
         v[k] = 0.5 * (motion[4 + k] + after);
         w[k] = 0.5 * (spin[4 + k] + spun);
     }
@@ -118,6 +118,9 @@ static double sphere_energies(const struct simulation *sim, int i, double energi
     energies[ENERGY_POTENTIAL] = -mass * (g.x * x[0] + g.y * x[1] + g.z * x[2]);
     energies[ENERGY_FRICTION] = sim->spheres.dissipated_friction[i] + force[3];
     energies[ENERGY_DAMPING] = sim->spheres.dissipated_damping[i] + 0.5 * force[7];
+    if (sim->job->energy_ledger) /* half of what background damping takes in this step */
+        energies[ENERGY_DAMPING] += sim->job->damping * sim->dt *
+                                    (energies[ENERGY_TRANSLATION] + energies[ENERGY_ROTATION]);
     energies[ENERGY_TANGENTIAL] = sim->spheres.dissipated_tangential[i];
     return speed2;
 }

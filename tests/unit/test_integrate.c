@@ -147,18 +147,23 @@ TEST(mass_proportional_damping)
 {
     struct scene scene;
     scene_single(&scene, 2.0);
-    const double mass = 1.0 / sphere_inverse_mass(&scene.spheres, 0);
-    for (int k = 0; k < 3; k++)
+    const double mass = 1.0 / sphere_inverse_mass(&scene.spheres, 0),
+                 radius = sphere_radius(&scene.spheres, 0);
+    for (int k = 0; k < 3; k++) {
         scene.work.gravity[k] = 0.0;
+        sphere_angular_velocity(&scene.spheres, 0)[k] = 0.0;
+    }
     sphere_velocity(&scene.spheres, 0)[1] = 3.0;
-    sphere_angular_velocity(&scene.spheres, 0)[0] = 8.0;
+    sphere_angular_velocity(&scene.spheres, 0)[0] = 800.0;
     const double before = scene.spheres.dissipated_damping[0];
     for (int n = 0; n < 500; n++)
         integrate_spheres(&scene.work);
-    const double *v = sphere_velocity(&scene.spheres, 0);
+    const double *v = sphere_velocity(&scene.spheres, 0),
+                 *w = sphere_angular_velocity(&scene.spheres, 0);
     EXPECT_NEAR(v[1] / 3.0, 0.3678794411714423, 1e-6);
-    EXPECT_NEAR(sphere_angular_velocity(&scene.spheres, 0)[0] / 8.0, 0.3678794411714423, 1e-6);
-    const double lost = 0.5 * mass * (9.0 - v[1] * v[1]);
+    EXPECT_NEAR(w[0] / 800.0, 0.3678794411714423, 1e-6);
+    const double lost = 0.5 * mass * (9.0 - v[1] * v[1]) +
+                        0.2 * mass * radius * radius * (640000.0 - w[0] * w[0]);
     EXPECT_NEAR((scene.spheres.dissipated_damping[0] - before) / lost, 1.0, 1e-12);
     spheres_clear(&scene.spheres);
 }
