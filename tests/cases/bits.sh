@@ -65,6 +65,13 @@ cut 8 [2,2,2] 2x2x2 ", a sphere larger than a subdomain"
 cut 8 [8,1,1] 8x1x1 ", subdomains half a radius thin"
 rm -rf cuts
 
+# ------------------------------------------------------------------ bodies that run into rest
+reference bucket bucket
+like bucket 1 "bucket, search every step" bucket $(every 1)
+like bucket 1 "bucket, all pairs" bucket $all_pairs
+like bucket 3 "bucket on 3 ranks" bucket
+rm -rf bucket
+
 # ------------------------------------------------------------------ physics and kernels
 # variants NAME SCENE OPTIONS...: another physics on one rank, three and five.
 variants()
