@@ -206,20 +206,22 @@ static void reference_move(struct reference *r, int i)
     double *x = r->spheres.motion[i].lane, *v = x + 4;
     double *w = r->spheres.spin[i].lane + 4, *load = r->spheres.force[i].lane;
     const double radius = x[3], inverse_mass = w[3], inverse_radius = 1.0 / radius;
-    double speed2 = 0.0; /* at the step, for the ledger */
+    double speed2 = 0.0, spin2 = 0.0; /* at the step, for the ledger */
     for (int k = 0; k < 3; k++) {
-        const double before = v[k];
+        const double before = v[k], spun = w[k];
         v[k] = before * keep + load[k] * (push * dt * inverse_mass) + push * dt * g[k];
         w[k] = w[k] * keep +
                load[4 + k] * (push * dt * 2.5 * inverse_mass * inverse_radius * inverse_radius);
         x[k] += v[k] * dt;
         speed2 += 0.5 * (before + v[k]) * (0.5 * (before + v[k]));
+        spin2 += 0.5 * (spun + w[k]) * (0.5 * (spun + w[k]));
     }
     if (job->energy_ledger) {
         r->spheres.dissipated_friction[i] += load[3];
         r->spheres.dissipated_damping[i] += load[7];
         if (job->damping > 0.0)
-            r->spheres.dissipated_damping[i] += job->damping * dt / inverse_mass * speed2;
+            r->spheres.dissipated_damping[i] +=
+                job->damping * dt / inverse_mass * (speed2 + 0.4 * radius * radius * spin2);
     }
     memset(load, 0, sizeof r->spheres.force[i]);
     sphere_complete(&r->spheres, i, &r->materials);
