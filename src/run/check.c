@@ -12,6 +12,8 @@
 #include "physics/critical_step.h"
 #include "run/simulation.h"
 
+enum { ALL_PAIRS_MOST = 20000 }; /* 2e8 pairs */
+
 /* A box around points. */
 struct extent {
     struct vec3 low, high;
@@ -83,10 +85,10 @@ static void choose_times(struct job *job)
 {
     double critical;
     job->time.step = simulation_choose_step(job, &critical);
-    const double n_steps = (double)(int64_t)(job->time.end / job->time.step + 0.5);
+    const double n_steps = (double)simulation_steps(job->time.end, job->time.step);
     job->time.end = (n_steps > 1.0 ? n_steps : 1.0) * job->time.step;
     if (job->output.series_every > 0.0) {
-        const double n = (double)(int64_t)(job->output.series_every / job->time.step + 0.5);
+        const double n = (double)simulation_steps(job->output.series_every, job->time.step);
         job->output.series_every = (n > 1.0 ? n : 1.0) * job->time.step;
     }
 }
@@ -113,6 +115,10 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
     if (n_spheres > INT64_C(2000000000))
         mistakes_add(mistakes, job->path, 0, 0, "%lld spheres; at most 2e9 are expected",
                      (long long)n_spheres);
+    if (job->force.search == JOB_SEARCH_ALL_PAIRS && n_spheres > ALL_PAIRS_MOST)
+        mistakes_add(mistakes, job->path, 0, 0,
+                     "testing.search is all-pairs for %lld spheres; at most %d are expected",
+                     (long long)n_spheres, ALL_PAIRS_MOST);
     if (grid[0] > 0 && grid[0] * grid[1] * grid[2] != n_ranks)
         mistakes_add(
             mistakes, job->path, 0, 0,

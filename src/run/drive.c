@@ -162,7 +162,8 @@ static bool has_ended(const struct drive *drive)
     return ended != 0;
 }
 
-/* The simulation, from a named checkpoint, the newest good one, or the scene. */
+/* The simulation, from a named checkpoint, the newest good one, or the scene; there is none
+ * after a failure. */
 static int prepare(struct drive *drive)
 {
     bool found = false;
@@ -184,7 +185,10 @@ static int prepare(struct drive *drive)
     drive->ended = found && drive->options->restart == NULL && has_ended(drive);
     if (drive->comm->rank == 0 && !drive->ended)
         status = run_folder_rewind(&drive->folder, drive->sim.step);
-    return comm_agree(drive->comm, status);
+    status = comm_agree(drive->comm, status);
+    if (status != REPORT_FINISHED)
+        simulation_destroy(&drive->sim);
+    return status;
 }
 
 /* ------------------------------------------------------------------------------------
@@ -293,12 +297,18 @@ static int loop(struct drive *drive)
 }
 
 /* The rows of the last instant: its forces are computed but nothing moves any more.  A run that
- * failed keeps the rows that it has. */
+ * failed keeps the rows that it has; one that fails only now does not end, so that the same
+ * command finds the same again. */
 static int finish_series(struct drive *drive)
 {
     struct simulation *sim = &drive->sim;
-    if (sim->watch.failure == WATCH_FINE)
+    if (sim->watch.failure == WATCH_FINE) {
         step_forces(sim);
+        if (sim->watch.failure != WATCH_FINE) {
+            watch_explain(&sim->watch, sim);
+            return REPORT_UNSTABLE;
+        }
+    }
     /* The segment is named after the step that would be next; a longer run replaces it. */
     sim->step++;
     const int status = simulation_save_series(sim, &drive->folder);

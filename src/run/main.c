@@ -75,11 +75,9 @@ static int run_or_check(const struct comm *comm, const struct options *options)
     struct job job = {0};
     char *text = NULL;
     int status = read_job(comm, options, &job, &text);
-    if (status != REPORT_FINISHED)
-        return status;
-    if (options->command == OPTIONS_CHECK)
+    if (status == REPORT_FINISHED && options->command == OPTIONS_CHECK)
         check_print(&job, comm->n_ranks);
-    else
+    else if (status == REPORT_FINISHED)
         status = drive_run(comm, options, &job, text);
     job_clear(&job);
     free(text);

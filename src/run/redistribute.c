@@ -32,8 +32,7 @@ static bool is_multiple(int64_t step, int64_t every)
 bool redistribute_is_due(const struct simulation *sim)
 {
     const struct job *job = sim->job;
-    return sim->spent.forced || !(sim->spent.search <= 1.0) ||
-           is_multiple(sim->step, job->order_every) ||
+    return !(sim->spent.search <= 1.0) || is_multiple(sim->step, job->order_every) ||
            is_multiple(sim->step, job->force.search_every) ||
            is_multiple(sim->step, job->force.redistribute_every) ||
            is_multiple(sim->step, job->force.repartition_every);
@@ -156,7 +155,7 @@ static void search(struct simulation *sim, const int *moved, bool some_left_run)
         for (int k = 0; k < 3; k++)
             spheres->searched_at[i][k] = sphere_position(spheres, i)[k];
     }
-    sim->spent = (struct simulation_spent){0.0, 0.0, 0.0, false};
+    sim->spent = (struct simulation_spent){0.0, 0.0, 0.0};
     sim->runtime.searches++;
 }
 

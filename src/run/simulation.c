@@ -17,6 +17,12 @@
 #include "store/checkpoint.h"
 #include "store/run_folder.h"
 
+int64_t simulation_steps(double time, double step)
+{
+    const double n = time / step, most = 1e15;
+    return (int64_t)((n < most ? n : most) + 0.5);
+}
+
 double simulation_choose_step(const struct job *job, double *critical)
 {
     double least = 1e300;
@@ -76,8 +82,8 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
 {
     *sim = (struct simulation){.comm = comm, .job = job};
     sim->dt = job->time.step;
-    sim->n_steps = (int64_t)(job->time.end / sim->dt + 0.5);
-    sim->sample_every = (int64_t)(job->output.series_every / sim->dt + 0.5);
+    sim->n_steps = simulation_steps(job->time.end, sim->dt);
+    sim->sample_every = simulation_steps(job->output.series_every, sim->dt);
     if (job->output.series_every > 0.0 && sim->sample_every == 0)
         sim->sample_every = 1;
     materials_build(&sim->materials, job);

@@ -5,7 +5,6 @@
 #ifndef TREMIE_RUN_SIMULATION_H
 #define TREMIE_RUN_SIMULATION_H
 
-#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/comm.h"
@@ -33,7 +32,6 @@ struct simulation_spent {
     double search; /* of the candidates' allowances */
     double inner;  /* of the inner list's */
     double bodies; /* of the bodies', since the last search */
-    bool forced;   /* something else asks for a search */
 };
 
 struct simulation {
@@ -88,6 +86,9 @@ int simulation_save(struct simulation *sim, const struct run_folder *folder,
 struct runtime_sizes simulation_sizes(const struct simulation *sim);
 /* The rows so far alone.  Collective. */
 int simulation_save_series(struct simulation *sim, const struct run_folder *folder);
+
+/* Steps in a time, rounded; 1e15 at most.  Local. */
+int64_t simulation_steps(double time, double step);
 
 /* The step that the job asks for, or `safety` times the critical step of the scene [s], and,
  * for reports, that critical step.  Depends on the job alone; steps read from CSV files

@@ -77,6 +77,8 @@ void watch_motion(struct watch *watch, const struct simulation *sim)
     comm_max(sim->comm, largest, 2);
     if (largest[0] <= sim->job->watch.motion && largest[1] <= sim->job->watch.motion)
         return;
+    if (watch->failure != WATCH_FINE)
+        return; /* `what` is about that */
     fail(watch, WATCH_MOTION);
     if (largest[1] > sim->job->watch.motion && body_worst >= 0)
         snprintf(watch->what, sizeof watch->what,
