@@ -127,7 +127,8 @@ static int scan_across(struct candidates *candidates, const struct cell_grid *hi
     for (int k = 0; k < high->n && low->n > 0; k++) {
         const struct seeker seeker = {high->x[k], high->y[k], high->z[k], high->reach[k],
                                       high->tag[k]};
-        const double window = seeker.reach + low->reach_max;
+        /* A little wider than needed, here too. */
+        const double window = 1.0000001 * (seeker.reach + low->reach_max);
         const int x0 = cell_grid_along(low, 0, seeker.x - window),
                   x1 = cell_grid_along(low, 0, seeker.x + window);
         const int y0 = cell_grid_along(low, 1, seeker.y - window),

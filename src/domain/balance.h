@@ -1,8 +1,8 @@
 /*
  * When to repartition (the paper's low level), and with which weights.
  *
- * Ranks measure the time that they spend on their own spheres (contact laws, integration);
- * waiting does not count.  At a search the largest is compared with the mean; above the job's
+ * Ranks measure the time that they spend on contact laws of their own spheres; waiting does not
+ * count.  At a search the largest is compared with the mean; above the job's
  * limit the boxes are cut anew.  Clocks decide here, and may: nothing of it changes a result.
  */
 #ifndef TREMIE_DOMAIN_BALANCE_H

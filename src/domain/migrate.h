@@ -4,8 +4,8 @@
  * canonical order.
  *
  * Both owners of a contact know its history, so a record travels with each sphere that moves.
- * Spheres that left the run (`removed`) go nowhere.  Afterwards moved_to_now() tells, for each
- * storage index of before, where that sphere is now; lists carry their history by it.
+ * Spheres that left the run (`removed`) go nowhere.  Afterwards moved[] tells, for each storage
+ * index of before, where that sphere is now; lists carry their history by it.
  */
 #ifndef TREMIE_DOMAIN_MIGRATE_H
 #define TREMIE_DOMAIN_MIGRATE_H
