@@ -95,7 +95,7 @@ install: all
 	    $(DESTDIR)$(PREFIX)/share/tremie/jobs
 	install -m 755 $(programs) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(wildcard config/*.yaml) $(DESTDIR)$(PREFIX)/share/tremie/config
-	install -m 644 $(wildcard jobs/*) $(DESTDIR)$(PREFIX)/share/tremie/jobs
+	install -m 644 $(wildcard jobs/*.yaml jobs/*.csv jobs/*.md) $(DESTDIR)$(PREFIX)/share/tremie/jobs
 
 ##  make clean        remove everything that was built (runs/ stays)
 clean:

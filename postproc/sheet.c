@@ -26,6 +26,8 @@ void sheet_clear(struct sheet *sheet)
 }
 
 static char *print_text(const char *format, va_list arguments)
+    __attribute__((format(printf, 1, 0)));
+static char *print_text(const char *format, va_list arguments)
 {
     va_list copy;
     va_copy(copy, arguments);
