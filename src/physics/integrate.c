@@ -14,7 +14,7 @@ typedef int64_t two_bits __attribute__((vector_size(16), may_alias));
 /* Running maxima of |v| / allowance: x and y, and z (in lane 0), for both lists. */
 struct spent {
     two xy[2], z[2];
-    two bad; /* stays 0.0 as long as everything is finite: x - x is NaN otherwise */
+    two bad; /* stays 0.0 as long as everything is finite: 0 x is NaN otherwise */
 };
 
 static inline two absolute(two a)
@@ -100,7 +100,7 @@ static inline __attribute__((always_inline)) void move_spheres(struct integrate_
         force[2] = zero;
         force[3] = zero;
         const two sum = (x_xy + v_xy) + (w_xy + x_z) + (v_z + w_z);
-        spent->bad += sum - sum;
+        spent->bad += sum * 0.0;
         gather_spent(spent, v_xy, v_z, work->inverse_allowance[i]);
     }
 }
