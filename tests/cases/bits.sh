@@ -44,7 +44,7 @@ for scene in heap mixed; do
     like $scene 3 "$scene on 3 ranks, search every 7 steps" $scene $(every 7)
     like $scene 1 "$scene, all pairs" $scene $all_pairs
     like $scene 2 "$scene on 2 ranks, all pairs, checkpoints by the clock" $scene $all_pairs \
-        --set checkpoint.every.wall=0.05
+        --set checkpoint.every.wall=0.2 --set checkpoint.keep=10000
     like $scene 3 "$scene on 3 ranks, both levels at odd moments" $scene $(both_levels 13 11)
     like $scene 4 "$scene on 4 ranks, cut anew every step" $scene $(both_levels 0 1) \
         --set decomposition.weights=candidates
