@@ -90,7 +90,11 @@ bool options_read(struct options *options, int argc, char **argv)
         (struct options){.overrides = array_allocate((size_t)argc, sizeof *options->overrides)};
     bool takes_word = false;
     const char *object = NULL;
-    if (argc >= 2 && !read_command(options, argv[1], &takes_word))
+    if (argc < 2) {
+        report_error("tremie needs a command; see tremie --help");
+        return false;
+    }
+    if (!read_command(options, argv[1], &takes_word))
         return false;
     for (int a = 2; a < argc;) {
         int used = 1;

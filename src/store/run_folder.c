@@ -268,19 +268,24 @@ int run_folder_rewind(const struct run_folder *folder, int64_t step)
 
 /* --------------------------------------------------------------------------- open and close */
 
-static int make_folders(const char *path)
+static int make_folder(const char *path)
 {
-    char *why = file_make_folders(path), *failed = array_string(path);
-    for (int k = 0; k < N_SUBFOLDERS && why == NULL; k++) {
-        free(failed);
-        failed = path_in(path, SUBFOLDERS[k]);
-        why = file_make_folders(failed);
-    }
+    char *why = file_make_folders(path);
     if (why != NULL)
-        report_error("cannot make the folder %s: %s; name another one with --out", failed, why);
+        report_error("cannot make the folder %s: %s; name another one with --out", path, why);
     const int status = why != NULL ? REPORT_STORAGE : REPORT_FINISHED;
-    free(failed);
     free(why);
+    return status;
+}
+
+static int make_subfolders(const char *path)
+{
+    int status = REPORT_FINISHED;
+    for (int k = 0; k < N_SUBFOLDERS && status == REPORT_FINISHED; k++) {
+        char *subfolder = path_in(path, SUBFOLDERS[k]);
+        status = make_folder(subfolder);
+        free(subfolder);
+    }
     return status;
 }
 
@@ -330,7 +335,7 @@ static int settle(const struct run_folder *folder, const struct look *look,
     else if (look->has_job)
         status = compare_job(folder, job_text);
     if (status == REPORT_FINISHED)
-        status = make_folders(folder->path);
+        status = make_subfolders(folder->path);
     if (status == REPORT_FINISHED)
         remove_temporaries(folder);
     if (status == REPORT_FINISHED) {
@@ -385,7 +390,7 @@ int run_folder_open(struct run_folder *folder, const char *path, const char *job
     struct look look;
     int status = inspect(path, fresh, &look);
     if (status == REPORT_FINISHED && !look.exists)
-        status = make_folders(path);
+        status = make_folder(path);
     if (status == REPORT_FINISHED)
         status = take_lock(folder);
     if (status == REPORT_FINISHED) /* once more: another run may have come and gone */

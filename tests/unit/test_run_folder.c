@@ -101,6 +101,10 @@ TEST(fresh_sets_aside)
     EXPECT_STRING(text, JOB);
     EXPECT(open_quietly(path, JOB, true) == REPORT_FINISHED);
     EXPECT(is_there(path, "set_aside_2/job.yaml"));
+    char *new = array_format("%s/new", path);
+    EXPECT(open_and_close(new, JOB, true, &resumes) == REPORT_FINISHED);
+    EXPECT(!is_there(new, "set_aside_1"));
+    free(new);
     free(text);
     free(file);
     free(path);
