@@ -40,12 +40,26 @@ static void extent_add(struct extent *extent, struct vec3 x, double margin)
 struct group_summary {
     int64_t n;
     double mass, radius_least, radius_most; /* [kg], [m] */
-    struct extent extent;
+    double rayleigh, speed;                 /* least step [s], largest speed [m/s] */
+    struct packing_sphere stiffest;         /* the sphere with that step */
+    bool one_material;
+    struct extent extent, centres;
 };
+
+static double rayleigh_step(const struct job *job, const struct packing_sphere *s)
+{
+    const struct job_material *m = &job->materials[s->material];
+    return critical_step_rayleigh(s->radius, m->density, m->young, m->poisson);
+}
 
 static struct group_summary summarise(const struct job *job, const struct packing *packing)
 {
-    struct group_summary summary = {packing->n, 0.0, 1e300, 0.0, extent_nothing()};
+    struct group_summary summary = {.n = packing->n,
+                                    .radius_least = 1e300,
+                                    .rayleigh = 1e300,
+                                    .one_material = true,
+                                    .extent = extent_nothing(),
+                                    .centres = extent_nothing()};
     for (int64_t k = 0; k < packing->n; k++) {
         const struct packing_sphere s = packing_get(packing, k);
         const double volume =
@@ -55,6 +69,15 @@ static struct group_summary summarise(const struct job *job, const struct packin
             s.radius < summary.radius_least ? s.radius : summary.radius_least;
         summary.radius_most = s.radius > summary.radius_most ? s.radius : summary.radius_most;
         extent_add(&summary.extent, s.position, s.radius);
+        extent_add(&summary.centres, s.position, 0.0);
+        const double speed = vec3_norm(s.velocity), rayleigh = rayleigh_step(job, &s);
+        summary.speed = speed > summary.speed ? speed : summary.speed;
+        summary.one_material =
+            summary.one_material && (k == 0 || s.material == summary.stiffest.material);
+        if (rayleigh < summary.rayleigh) {
+            summary.rayleigh = rayleigh;
+            summary.stiffest = s;
+        }
     }
     return summary;
 }
@@ -147,10 +170,11 @@ static void print_extent(const char *label, const struct extent *e)
 }
 
 /* Steps that an impact of two such spheres at this speed lasts. */
-static double steps_per_contact(const struct job *job, const struct job_spheres *group,
-                                double radius, double speed)
+static double steps_per_contact(const struct job *job, const struct packing_sphere *sphere,
+                                double speed)
 {
-    const struct job_material *m = &job->materials[group->material];
+    const struct job_material *m = &job->materials[sphere->material];
+    const double radius = sphere->radius;
     const double mass =
         m->density * 4.0 / 3.0 * 3.14159265358979323846 * radius * radius * radius;
     const double young = m->young / (2.0 * (1.0 - m->poisson * m->poisson));
@@ -158,39 +182,56 @@ static double steps_per_contact(const struct job *job, const struct job_spheres 
            job->time.step;
 }
 
+/* Does every centre lie in the domain? */
+static bool is_inside(const struct extent *centres, const struct job *job)
+{
+    const struct vec3 *low = &job->domain.min, *high = &job->domain.max;
+    return centres->low.x >= low->x && centres->low.y >= low->y && centres->low.z >= low->z &&
+           centres->high.x <= high->x && centres->high.y <= high->y &&
+           centres->high.z <= high->z;
+}
+
+static void warn_of_group(const struct job *job, const char *name,
+                          const struct group_summary *s, double speed, double contact)
+{
+    if (job->time.step > 0.4 * s->rayleigh)
+        report_warn(
+            "time.step is %.3g of the Rayleigh step of '%s'; runs beyond 0.4 are likely to be "
+            "unstable",
+            job->time.step / s->rayleigh, name);
+    else if (contact < 20.0)
+        report_warn(
+            "impacts of '%s' at %.3g m/s last %.3g steps; below 20, restitution scatters by "
+            "over 0.013",
+            name, speed, contact);
+    if (!is_inside(&s->centres, job))
+        report_warn("spheres of '%s' begin outside the domain", name);
+}
+
 static void print_group(const struct job *job, int g, struct extent *scene, int64_t *n,
-                        double *speed)
+                        double fall)
 {
     struct packing packing;
     char *why = NULL;
     CHECK(packing_open(&packing, job, g, &why), "%s", why);
     const struct job_spheres *group = &job->spheres[g];
-    const struct job_material *m = &job->materials[group->material];
     const struct group_summary s = summarise(job, &packing);
     packing_close(&packing);
     *n += s.n;
     extent_add(scene, s.extent.low, 0.0);
     extent_add(scene, s.extent.high, 0.0);
     report_say("spheres  %s: %lld of %s, radius %.4g .. %.4g m, mass %.4g kg", group->name,
-               (long long)s.n, m->name, s.radius_least, s.radius_most, s.mass);
+               (long long)s.n,
+               s.one_material ? job->materials[s.stiffest.material].name : "several materials",
+               s.radius_least, s.radius_most, s.mass);
     print_extent("         ", &s.extent);
-    const double rayleigh =
-        critical_step_rayleigh(s.radius_least, m->density, m->young, m->poisson);
-    const double contact = steps_per_contact(job, group, s.radius_least, *speed);
+    const double speed = s.speed > fall ? s.speed : fall;
+    const double contact = steps_per_contact(job, &s.stiffest, speed);
     report_say(
         "         Rayleigh step %.4g s: the step is %.3g of it; an impact at %.3g m/s lasts "
         "%.3g steps",
-        rayleigh, job->time.step / rayleigh, *speed, contact);
-    if (job->time.step > 0.4 * rayleigh)
-        report_warn(
-            "time.step is %.3g of the Rayleigh step of '%s'; runs beyond 0.4 are likely to be "
-            "unstable",
-            job->time.step / rayleigh, group->name);
-    else if (contact < 20.0)
-        report_warn(
-            "impacts of '%s' at %.3g m/s last %.3g steps; below 20, restitution scatters by "
-            "over 0.013",
-            group->name, *speed, contact);
+        s.rayleigh, job->time.step / s.rayleigh, speed, contact);
+    warn_of_group(job, group->name, &s, speed, contact);
 }
 
 static void print_bodies(const struct job *job, struct extent *scene)
@@ -202,8 +243,9 @@ static void print_bodies(const struct job *job, struct extent *scene)
         const struct body *body = &bodies.list[b];
         for (int v = 0; v < body->mesh.n_vertices; v++)
             extent_add(&extent, body->mesh.reference[v], 0.0);
-        report_say("body     %s: rigid, %s, %d facets%s", body->name,
+        report_say("body     %s: rigid, %s, %d facet%s%s", body->name,
                    job->materials[body->material].name, body->mesh.n_faces,
+                   body->mesh.n_faces == 1 ? "" : "s",
                    body->moves ? ", moves as prescribed" : "");
         print_extent("         ", &extent);
     }
@@ -228,14 +270,8 @@ void check_print(const struct job *job, int n_ranks)
     report_say("job      %s: %s", job->path, job->title);
     report_say("time     %.6g s in %.0f steps of %.6g s", job->time.end, n_steps,
                job->time.step);
-    /* Impact speeds: a fall through the scene, or what is given. */
-    double speed = fall_speed(job);
-    for (int k = 0; k < job->n_spheres; k++) {
-        const double given = vec3_norm(job->spheres[k].velocity);
-        speed = given > speed ? given : speed;
-    }
     for (int k = 0; k < job->n_spheres; k++)
-        print_group(job, k, &scene, &n, &speed);
+        print_group(job, k, &scene, &n, fall_speed(job));
     print_bodies(job, &scene);
     print_extent("scene    ", &scene);
     const struct extent domain = {job->domain.min, job->domain.max};
