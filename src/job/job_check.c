@@ -256,8 +256,8 @@ static void spheres_check(const struct check *check, bool read_files, bool *fall
             falling[job->spheres[i].material] = true;
         total += (double)job->spheres[i].count;
     }
-    if (total > 2147483648.0)
-        mistake(check, "spheres", "are more than 2147483648 in all; fewer are expected");
+    if (total > 2e9)
+        mistake(check, "spheres", "are more than 2e9 in all; fewer are expected");
 }
 
 static void box_check(const struct check *check, const struct job_body *body, int i)

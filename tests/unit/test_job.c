@@ -146,7 +146,7 @@ TEST(all_mistakes_are_listed_at_once)
                        "first, at most 40) is expected"));
     EXPECT(has_mistake(8, 64,
                        "spheres.0.packing.count is '10.5'; a whole number between 1 and "
-                       "2147483648 is expected"));
+                       "2e+09 is expected"));
     EXPECT(has_mistake(8, 41,
                        "spheres.0.packing.spacing is missing; a length above 0 and at most "
                        "1e+06 m is expected"));
