@@ -22,8 +22,8 @@
 #include "store/checkpoint.h"
 #include "store/run_folder.h"
 
-/* Seconds between looks at the clock's chores: progress, status, the stop file. */
-static const double CHORES_EVERY = 1.0, LINES_EVERY = 30.0;
+/* Seconds between looks for the stop file, between progress and status, and between lines that stay. */
+static const double LOOKS_EVERY = 0.1, CHORES_EVERY = 1.0, LINES_EVERY = 30.0;
 
 struct drive {
     const struct comm *comm;
@@ -35,7 +35,7 @@ struct drive {
     bool ended; /* nothing is left to do */
     struct simulation sim;
     int64_t first_step; /* of this process */
-    double started, chores_at, line_at;
+    double started, look_at, chores_at, line_at;
     char *stop_path;
 };
 
@@ -222,7 +222,12 @@ static void do_chores(struct drive *drive)
 {
     const double now = timer_now();
     struct simulation *sim = &drive->sim;
-    if (drive->comm->rank != 0 || now < drive->chores_at)
+    if (drive->comm->rank != 0 || now < drive->look_at)
+        return;
+    drive->look_at = now + LOOKS_EVERY;
+    if (access(drive->stop_path, F_OK) == 0)
+        sim->watch.stop_asked = true; /* collective with the next step's reduction */
+    if (now < drive->chores_at)
         return;
     drive->chores_at = now + CHORES_EVERY;
     const double done = (double)(sim->step - drive->first_step), elapsed = now - drive->started;
@@ -240,8 +245,6 @@ static void do_chores(struct drive *drive)
         (long long)sim->step, (long long)sim->n_steps, (double)sim->step * sim->dt, rate * 1e-6,
         sim->watch.overlap, sim->balance.imbalance > 0.0 ? sim->balance.imbalance : 1.0, left);
     write_status(drive, "running", rate, left);
-    if (access(drive->stop_path, F_OK) == 0)
-        sim->watch.stop_asked = true; /* collective with the next step's reduction */
 }
 
 static bool checkpoint_is_due(struct drive *drive)
@@ -355,7 +358,7 @@ int drive_run(const struct comm *comm, const struct options *options, const stru
         if (status == REPORT_FINISHED) {
             drive.first_step = drive.sim.step;
             drive.started = timer_now();
-            drive.chores_at = drive.started + CHORES_EVERY;
+            drive.look_at = drive.chores_at = drive.started;
             drive.line_at = drive.started + LINES_EVERY;
             if (drive.ended)
                 report_say("nothing to do: the run has reached its end");
