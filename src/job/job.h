@@ -48,6 +48,7 @@ struct job_spheres {
     /* CSV with a header line that names columns: x_m,y_m,z_m and optionally radius_m, material,
      * vx_m_s,vy_m_s,vz_m_s (resolved relative to the job file). */
     char *file;
+    int64_t sum; /* checksum of that file */
 };
 
 enum job_geometry {

@@ -106,6 +106,11 @@ static const struct schema_key packing_keys[] = {
      "CSV file, relative to the job file; its first line names the columns: x_m, y_m, z_m "
      "and, if wanted, radius_m, material, vx_m_s, vy_m_s, vz_m_s",
      .required = true, .kinds = KIND(JOB_PACKING_CSV), AT(struct job_spheres, file)},
+    {"sum", SCHEMA_COUNT,
+     "checksum of the CSV file (CRC-32), filled in by the program: a run is not resumed with "
+     "another file's spheres",
+     .standard = "0", BETWEEN(0.0, 4294967295.0), .kinds = KIND(JOB_PACKING_CSV),
+     AT(struct job_spheres, sum)},
     END};
 
 static const struct schema_key spheres_keys[] = {

@@ -1,8 +1,11 @@
 /* See check.h. */
 #include "run/check.h"
 
+#include <limits.h>
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
 #include "base/report.h"
@@ -11,6 +14,8 @@
 #include "model/packing.h"
 #include "physics/critical_step.h"
 #include "run/simulation.h"
+#include "store/crc32.h"
+#include "store/file.h"
 
 enum { ALL_PAIRS_MOST = 20000 }; /* 2e8 pairs */
 
@@ -116,6 +121,29 @@ static void choose_times(struct job *job)
     }
 }
 
+/* A packing says "file:line:column: what"; the place goes where places go. */
+static void add_csv_mistake(struct mistakes *mistakes, const char *file, const char *why)
+{
+    int line = 0, column = 0, begin = 0;
+    const char *rest = why + strlen(file);
+    if (sscanf(rest, ":%d:%d: %n", &line, &column, &begin) < 2)
+        begin = 2; /* "file: what" */
+    mistakes_add(mistakes, file, line, column, "%s", rest + begin);
+}
+
+/* Checksum of a CSV file that has just been read; 0 when it has gone. */
+static int64_t checksum(const char *path)
+{
+    enum { MOST = INT_MAX };
+    struct crc32 crc;
+    char *text = NULL, *why = file_read(path, MOST, &text);
+    crc32_init(&crc);
+    const int64_t sum = why == NULL ? (int64_t)crc32_of(&crc, text, strlen(text)) : 0;
+    free(text);
+    free(why);
+    return sum;
+}
+
 bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
 {
     struct extent scene = extent_nothing();
@@ -125,7 +153,7 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
         struct packing packing;
         char *why = NULL;
         if (!packing_open(&packing, job, g, &why)) {
-            mistakes_add(mistakes, job->path, 0, 0, "%s", why);
+            add_csv_mistake(mistakes, job->spheres[g].file, why);
             free(why);
             continue;
         }
@@ -133,6 +161,8 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
         extent_add(&scene, summary.extent.low, 0.0);
         extent_add(&scene, summary.extent.high, 0.0);
         n_spheres += packing.n;
+        if (packing.rows != NULL)
+            job->spheres[g].sum = checksum(job->spheres[g].file);
         packing_close(&packing);
     }
     if (n_spheres > INT64_C(2000000000))

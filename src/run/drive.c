@@ -50,11 +50,29 @@ static void share_path(struct drive *drive)
     comm_broadcast(drive->comm, path, (size_t)size);
 }
 
+/* A checkpoint that was asked for by name must be one, before anything is made. */
+static int look_at_restart(const char *path)
+{
+    struct checkpoint header = {0};
+    char *why = NULL;
+    if (path == NULL)
+        return REPORT_FINISHED;
+    if (!checkpoint_read_header(path, &header, &why)) {
+        report_error("--restart %s: %s; name a checkpoint", path, why);
+        free(why);
+        return REPORT_BAD_INPUT;
+    }
+    checkpoint_clear(&header);
+    return REPORT_FINISHED;
+}
+
 static int open_folder(struct drive *drive)
 {
     int words[2] = {REPORT_FINISHED, 0};
     drive->folder = (struct run_folder){.path = NULL, .lock = -1};
-    if (drive->comm->rank == 0) {
+    if (drive->comm->rank == 0)
+        words[0] = look_at_restart(drive->options->restart);
+    if (drive->comm->rank == 0 && words[0] == REPORT_FINISHED) {
         char *path = drive->options->out != NULL ? array_string(drive->options->out)
                                                  : array_format("runs/%s", drive->job->name);
         bool resumes = false;
@@ -396,17 +414,25 @@ int drive_status(const char *run)
 int drive_stop(const char *run)
 {
     char *status = array_format("%s/status", run), *stop = array_format("%s/stop", run);
+    char state[64] = "";
     int result = REPORT_FINISHED;
-    if (access(status, F_OK) != 0) {
+    FILE *file = fopen(status, "r");
+    if (file != NULL && fgets(state, sizeof state, file) == NULL)
+        state[0] = '\0';
+    if (file == NULL) {
         report_error(
             "%s is not a run's folder, or its run has not begun; name the folder of a run",
             run);
         result = REPORT_BAD_INPUT;
+    } else if (strncmp(state, "state: running", 14) != 0) {
+        report_say("nothing runs in %s: there is nothing to stop", run);
     } else {
         result = run_folder_write_file(stop, "stop\n");
+        if (result == REPORT_FINISHED)
+            report_say("asked the run in %s to stop with a checkpoint", run);
     }
-    if (result == REPORT_FINISHED)
-        report_say("asked the run in %s to stop with a checkpoint", run);
+    if (file != NULL)
+        fclose(file);
     free(status);
     free(stop);
     return result;

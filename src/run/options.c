@@ -32,7 +32,8 @@ static bool read_isa(struct options *options, const char *name)
         options->isa = (enum pair_kernel_isa)isa;
         if (pair_kernel_isa_runs(options->isa))
             return true;
-        report_error("--isa %s does not run on this processor; use --isa auto", name);
+        report_error("--isa %s is not in this program or not in this processor; use --isa auto",
+                     name);
         return false;
     }
     report_error("--isa %s is unknown; auto, generic, v2, v3 or v4 is expected", name);
