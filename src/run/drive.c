@@ -22,7 +22,7 @@
 #include "store/checkpoint.h"
 #include "store/run_folder.h"
 
-/* Seconds between looks for the stop file, between progress and status, and between lines that stay. */
+/* Seconds between looks for the stop file, between progress reports, between lines that stay. */
 static const double LOOKS_EVERY = 0.1, CHORES_EVERY = 1.0, LINES_EVERY = 30.0;
 
 struct drive {
