@@ -1,7 +1,7 @@
 #!/bin/bash
 # How fast tremie steps a bed of 8768 spheres at rest, on one core, beside LIGGGHTS where that is installed.
 #
-#   make bench [ROUNDS=5] [STEPS=6000] [CORE=0]
+#   make bench [ROUNDS=5] [STEPS=6000] [CORE=0] [LIGGGHTS=liggghts]
 #
 # The bed settles once, in about a minute and a half, into build/bench/settled; `make clean` forgets it.
 # From it both codes start at rest and without memory, run until contacts hold what they have to, and keep
@@ -15,7 +15,7 @@ set -euo pipefail
 cd "$(dirname "$0")/../.."
 
 BIN=$(realpath "${BIN:-bin}")
-ROUNDS=${ROUNDS:-5} STEPS=${STEPS:-6000} CORE=${CORE:-0}
+ROUNDS=${ROUNDS:-5} STEPS=${STEPS:-6000} CORE=${CORE:-0} LIGGGHTS=${LIGGGHTS:-liggghts}
 HERE=$PWD/tests/bench
 WORK=$PWD/build/bench/settled
 TABLE=$HERE/settled.csv
@@ -72,7 +72,7 @@ tremie()
 # liggghts NAME STEPS START LAST [SKIN]
 liggghts()
 {
-    timed "$1" env liggghts -in settled.in -log none -var start "$3" -var skin "${5:-$skin}" -var steps "$2" \
+    timed "$1" "$LIGGGHTS" -in settled.in -log none -var start "$3" -var skin "${5:-$skin}" -var steps "$2" \
         -var last "$4"
 }
 
@@ -80,11 +80,11 @@ echo "letting contacts take up their loads"
 for ledger in false true; do
     tremie "relaxed-$ledger" $ledger $RELAX
 done
-has_liggghts=$(command -v liggghts || true)
+has_liggghts=$(command -v "$LIGGGHTS" || true)
 if [ -n "$has_liggghts" ]; then
     liggghts relaxed 2000 "read_data bed.data" "write_restart relaxed.bin" 0.01
 else
-    echo "liggghts is not here, so tremie is measured alone; to compare, on Debian: apt-get install liggghts"
+    echo "$LIGGGHTS is not here, so tremie is measured alone; to compare, on Debian: apt-get install liggghts"
 fi
 
 # ---------------------------------------------------------------------------------------------- measuring
@@ -116,7 +116,7 @@ from_relaxed start false 10
 start_tremie=$(cat start.user)
 if [ -n "$has_liggghts" ]; then
     best=
-    for try in "${SKINS[@]}"; do
+    for try in "${SKINS[@]}" "${SKINS[@]}"; do # twice: the machine may have been busy
         liggghts skin 1000 "read_restart relaxed.bin" "print done" "$try"
         used=$(cat skin.user)
         echo "liggghts with skin $try m: $used s for 1000 steps"
