@@ -410,6 +410,22 @@ static void gather_group(const struct step *step, int begin, int end)
     }
 }
 
+/* The same where only one feature is near: nothing to choose from. */
+static void gather_one(const struct step *step, int entry)
+{
+    const struct facet_contact *contact = &step->facets->list[entry];
+    const struct mesh *mesh = &step->bodies->list[contact->body].mesh;
+    const struct vec3 centre = vec3_of(sphere_position(step->spheres, contact->sphere));
+    const double radius = sphere_radius(step->spheres, contact->sphere);
+    struct contact_geometry at;
+    if (contact_geometry_touches(mesh, contact->feature, centre, radius, &at)) {
+        add_contact(step, entry, &at, radius - at.distance);
+    } else if (holds_history(contact)) {
+        at = contact_geometry_closest(mesh, contact->feature, centre);
+        add_contact(step, entry, &at, 0.0);
+    }
+}
+
 void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres,
                           const struct bodies *bodies, const struct materials *materials,
                           double dt, bool ledger)
@@ -421,7 +437,10 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
         for (end = k + 1; end < facets->n; end++)
             if (list[end].sphere != list[k].sphere || list[end].body != list[k].body)
                 break;
-        gather_group(&step, k, end);
+        if (end == k + 1)
+            gather_one(&step, k);
+        else
+            gather_group(&step, k, end);
     }
     empty_batch(&step);
     for (int b = 0; b < facets->n_bodies; b++)

@@ -85,13 +85,21 @@ LANES_INLINE void transpose(lanes r[8])
         transpose_square(r + WIDTH * part);
 }
 
-LANES_INLINE lanes row_part(const struct sphere_row *row, int part)
+/* Rows are found by their distance from the first [bytes]: worked out once a pair, it serves
+ * three arrays. */
+LANES_INLINE size_t row_at(int index)
 {
-    return lanes_load(row->lane + WIDTH * part);
+    return sizeof(struct sphere_row) * (unsigned)index;
+}
+
+LANES_INLINE lanes row_part(const struct sphere_row *rows, size_t at, int part)
+{
+    return lanes_load((const double *)(const void *)((const char *)rows + at) + WIDTH * part);
 }
 
 /* Both spheres' rows, combined. */
 struct block {
+    size_t first[WIDTH], second[WIDTH]; /* where the rows are */
     lanes motion[8]; /* {x y z of second - first, R_i + R_j | v of second - first, R_j - R_i} */
     lanes spin[8];   /* sums {R w (3) 1/R | w (3) 1/m} */
 };
@@ -102,16 +110,18 @@ LANES_INLINE void block_load(struct block *block, const struct pair_kernel_work 
 
 #pragma GCC unroll 8
     for (int l = 0; l < WIDTH; l++) {
-        const int i = work->first[k + l], j = work->second[k + l];
+        const size_t i = row_at(work->first[k + l]), j = row_at(work->second[k + l]);
+        block->first[l] = i;
+        block->second[l] = j;
 #pragma GCC unroll 4
         for (int part = 0; part < PARTS; part++) {
             const lanes sign = lanes_load(signs + WIDTH * part);
             const bool has_radius = part == 3 / WIDTH;
-            const lanes of_first = row_part(&work->motion[i], part);
+            const lanes of_first = row_part(work->motion, i, part);
             block->motion[WIDTH * part + l] =
-                row_part(&work->motion[j], part) - (has_radius ? of_first * sign : of_first);
+                row_part(work->motion, j, part) - (has_radius ? of_first * sign : of_first);
             block->spin[WIDTH * part + l] =
-                row_part(&work->spin[j], part) + row_part(&work->spin[i], part);
+                row_part(work->spin, j, part) + row_part(work->spin, i, part);
         }
     }
     transpose(block->motion);
@@ -122,10 +132,10 @@ LANES_INLINE void fetch_ahead(const struct pair_kernel_work *work, int k)
 {
 #pragma GCC unroll 8
     for (int l = 0; l < WIDTH; l++) {
-        const int j = work->second[k + AHEAD + l];
-        __builtin_prefetch(&work->motion[j]);
-        __builtin_prefetch(&work->spin[j]);
-        __builtin_prefetch(&work->force[j], 1);
+        const size_t j = row_at(work->second[k + AHEAD + l]);
+        __builtin_prefetch((const char *)work->motion + j);
+        __builtin_prefetch((const char *)work->spin + j);
+        __builtin_prefetch((const char *)work->force + j, 1);
     }
 }
 
@@ -152,7 +162,12 @@ LANES_INLINE struct contact_law_meeting block_meeting(const struct block *block)
     return meeting;
 }
 
-/* The rows to add to the force rows of the first and the second. */
+/* In a row of several vectors, force and torque lie apart.  Then the first's force, which is
+ * the second's turned round, needs no transposing of its own. */
+enum { FORCE_APART = PARTS > 1 };
+
+/* The rows to add to the force rows of the first and the second; of the first's only the
+ * torque's part where the force's lies apart. */
 LANES_INLINE void block_rows(const struct block *block,
                              const struct contact_law_meeting *meeting,
                              const struct contact_law_result *result, bool ledger,
@@ -169,28 +184,43 @@ LANES_INLINE void block_rows(const struct block *block,
 #pragma GCC unroll 3
     for (int x = 0; x < 3; x++) {
         second[x] = f[x] + result->normal * n[x];
-        first[x] = -second[x];
+        if (!FORCE_APART)
+            first[x] = -second[x];
         first[4 + x] = arm_first * turn[x];
         second[4 + x] = arm_second * turn[x];
     }
     first[3] = second[3] = ledger ? 0.5 * result->lost_friction : lanes_all(0.0);
     first[7] = second[7] = ledger ? 0.5 * result->lost_damping : lanes_all(0.0);
-    transpose(first);
     transpose(second);
+#pragma GCC unroll 4
+    for (int part = FORCE_APART ? PARTS / 2 : 0; part < PARTS; part++)
+        transpose_square(first + WIDTH * part);
+}
+
+/* A part of the second's force turned round; the energy in lane 3 is the same for both. */
+LANES_INLINE lanes turned_round(lanes force, int part)
+{
+    static const int64_t signs[8]
+        __attribute__((aligned(64))) = {INT64_MIN, INT64_MIN, INT64_MIN, 0};
+    return (lanes)((lanes_mask)force ^
+                   (lanes_mask)lanes_load((const double *)(const void *)signs + WIDTH * part));
 }
 
 /* Row after row in the order of the list: where pairs share a sphere, sums depend on it. */
-LANES_INLINE void block_add(struct pair_kernel_work *work, int k, const lanes first[8],
-                            const lanes second[8])
+LANES_INLINE void block_add(const struct pair_kernel_work *work, const struct block *block,
+                            const lanes first[8], const lanes second[8])
 {
 #pragma GCC unroll 8
     for (int l = 0; l < WIDTH; l++) {
-        double *f = work->force[work->first[k + l]].lane;
-        double *g = work->force[work->second[k + l]].lane;
+        double *f = (double *)(void *)((char *)work->force + block->first[l]);
+        double *g = (double *)(void *)((char *)work->force + block->second[l]);
 #pragma GCC unroll 4
         for (int part = 0; part < PARTS; part++) {
             const int at = WIDTH * part;
-            lanes_store(f + at, lanes_load(f + at) + first[at + l]);
+            const bool is_force = FORCE_APART && part < PARTS / 2;
+            const lanes of_first =
+                is_force ? turned_round(second[at + l], part) : first[at + l];
+            lanes_store(f + at, lanes_load(f + at) + of_first);
             lanes_store(g + at, lanes_load(g + at) + second[at + l]);
         }
     }
@@ -227,14 +257,16 @@ LANES_INLINE struct contact_law_constants constants_of_each(const struct pair_ke
     return constants;
 }
 
-/* Compiled for each choice, so that what is not asked for costs nothing. */
-LANES_INLINE void apply(struct pair_kernel_work *work, bool uniform, bool ledger)
+/* Compiled for each choice, so that what is not asked for costs nothing.  Works on a copy,
+ * which the compiler knows that no row overlaps. */
+LANES_INLINE void apply(struct pair_kernel_work *given, bool uniform, bool ledger)
 {
+    const struct pair_kernel_work own = *given, *work = &own;
     const lanes dt = lanes_all(work->dt);
     struct contact_law_constants constants;
     lanes deepest = lanes_all(0.0);
 
-    work->overlap_max = 0.0;
+    given->overlap_max = 0.0;
     if (work->n_padded == 0)
         return;
     if (uniform)
@@ -257,7 +289,7 @@ LANES_INLINE void apply(struct pair_kernel_work *work, bool uniform, bool ledger
         for (int h = 0; h < CONTACT_LANES; h++)
             lanes_store(work->history[h] + k, history[h]);
         block_rows(&block, &meeting, &result, ledger, first, second);
-        block_add(work, k, first, second);
+        block_add(work, &block, first, second);
         if (ledger)
 #pragma GCC unroll 8
             for (int l = 0; l < WIDTH; l++)
@@ -266,8 +298,8 @@ LANES_INLINE void apply(struct pair_kernel_work *work, bool uniform, bool ledger
         deepest = lanes_where(relative > deepest, relative, deepest);
     }
     for (int l = 0; l < WIDTH; l++)
-        work->overlap_max =
-            0.5 * deepest[l] > work->overlap_max ? 0.5 * deepest[l] : work->overlap_max;
+        given->overlap_max =
+            0.5 * deepest[l] > given->overlap_max ? 0.5 * deepest[l] : given->overlap_max;
 }
 
 static void apply_mixed(struct pair_kernel_work *work)

@@ -22,7 +22,7 @@
 #include "store/checkpoint.h"
 #include "store/run_folder.h"
 
-/* Seconds between looks for the stop file, between progress reports, between lines that stay. */
+/* Seconds between looks for the stop file, progress reports, and lines that stay. */
 static const double LOOKS_EVERY = 0.1, CHORES_EVERY = 1.0, LINES_EVERY = 30.0;
 
 struct drive {
@@ -58,7 +58,7 @@ static int look_at_restart(const char *path)
     if (path == NULL)
         return REPORT_FINISHED;
     if (!checkpoint_read_header(path, &header, &why)) {
-        report_error("--restart %s: %s; name a checkpoint", path, why);
+        report_error("cannot use the checkpoint %s: %s; name another one", path, why);
         free(why);
         return REPORT_BAD_INPUT;
     }

@@ -32,7 +32,7 @@ static bool read_isa(struct options *options, const char *name)
         options->isa = (enum pair_kernel_isa)isa;
         if (pair_kernel_isa_runs(options->isa))
             return true;
-        report_error("--isa %s is not in this program or not in this processor; use --isa auto",
+        report_error("--isa %s does not run here (processor or build lacks it); use --isa auto",
                      name);
         return false;
     }

@@ -17,10 +17,10 @@
 #include "run/simulation.h"
 
 /* Steps that a search and an inner list should last at present speeds; measured to pay. */
-static const double SEARCH_STEPS = 60.0, INNER_STEPS = 12.0;
+static const double SEARCH_STEPS = 60.0, INNER_STEPS = 20.0;
 static const double SPEED_MARGIN = 1.3;
 /* Largest allowance and least inner allowance, in radii. */
-static const double ALLOWANCE_MOST = 6.0, INNER_LEAST = 0.01;
+static const double ALLOWANCE_MOST = 6.0, INNER_LEAST = 0.0015;
 /* Below this exact share a search can wait. */
 static const double SPENT_FINE = 0.7;
 

@@ -42,11 +42,12 @@ says "was written by another job"
 [ ! -e new/checkpoints/step_000000000600.h5 ] || why+=" it has a checkpoint;"
 result "checkpoint of another job"
 
-refused 4 missing "$@" --restart nowhere.h5
+refused 2 missing "$@" --restart nowhere.h5
 says "cannot use the checkpoint nowhere.h5: No such file"
+[ ! -e missing ] || why+=" a folder was made for it;"
 result "missing checkpoint"
 
-refused 4 strange "$@" --restart "$scenes/heap.yaml"
+refused 2 strange "$@" --restart "$scenes/heap.yaml"
 says "cannot use the checkpoint"
 result "something else for a checkpoint"
 
