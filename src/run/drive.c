@@ -36,6 +36,7 @@ struct drive {
     struct simulation sim;
     int64_t first_step; /* of this process */
     double started, look_at, chores_at, line_at;
+    double overlap; /* largest over radius since this process began */
     char *stop_path;
 };
 
@@ -300,6 +301,8 @@ static int loop(struct drive *drive)
     while (sim->step < sim->n_steps && !sim->watch.stop_agreed &&
            sim->watch.failure == WATCH_FINE) {
         step(sim);
+        drive->overlap =
+            sim->watch.overlap > drive->overlap ? sim->watch.overlap : drive->overlap;
         do_chores(drive);
         if (sim->watch.failure == WATCH_FINE && checkpoint_is_due(drive)) {
             status = save(drive);
@@ -352,8 +355,10 @@ static int finish(struct drive *drive, int status)
     format_duration(took, sizeof took, elapsed);
     const double rate = elapsed > 0.0 ? done * (double)sim->n_spheres / elapsed : 0.0;
     if (status == REPORT_FINISHED)
-        report_say("finished at step %lld (%.6g s) after %s: %.3g million particle-steps/s",
-                   (long long)sim->step, (double)sim->step * sim->dt, took, rate * 1e-6);
+        report_say("finished at step %lld (%.6g s) after %s: %.3g million particle-steps/s, "
+                   "largest overlap %.2g of a radius",
+                   (long long)sim->step, (double)sim->step * sim->dt, took, rate * 1e-6,
+                   drive->overlap);
     else if (status == REPORT_STOPPED)
         report_say("stopped with a checkpoint at step %lld of %lld; the same command resumes",
                    (long long)sim->step, (long long)sim->n_steps);
