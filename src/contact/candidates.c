@@ -7,10 +7,8 @@
 #include "model/order.h"
 #include "model/sphere.h"
 
-/* Upper bound of each level's reach as a multiple of the least reach; the last takes the
- * rest. */
-static const double LEVEL_BOUND[CANDIDATES_LEVELS] = {1.3,  2.6,  5.2,  10.4,
-                                                      20.8, 41.6, 83.2, 1e300};
+const double candidates_level_bound[CANDIDATES_LEVELS] = {1.3,  2.6,  5.2,  10.4,
+                                                          20.8, 41.6, 83.2, 1e300};
 
 void candidates_clear(struct candidates *candidates)
 {
@@ -157,7 +155,7 @@ static void fill_levels(struct candidates *candidates, const struct spheres *sph
     int n_filed = 0;
     double bound_before = 0.0;
     for (int l = 0; l < CANDIDATES_LEVELS; l++) {
-        const double bound = least * LEVEL_BOUND[l];
+        const double bound = least * candidates_level_bound[l];
         int n = 0;
         double reach_max = 0.0;
         for (int i = 0; i < spheres->n_all && n_filed < spheres->n_all; i++) {

@@ -21,6 +21,9 @@ struct spheres;
 
 enum { CANDIDATES_LEVELS = 8 };
 
+/* Upper bound of each level's reach, in least reaches; the last takes the rest. */
+extern const double candidates_level_bound[CANDIDATES_LEVELS];
+
 struct candidates {
     int n, capacity;
     int *first, *second; /* storage indices, sorted by the places of first and second */

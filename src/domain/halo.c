@@ -6,13 +6,11 @@
 
 #include "base/array.h"
 #include "base/report.h"
+#include "contact/candidates.h"
 #include "domain/boxes.h"
 #include "model/sphere.h"
 
-enum { LEVELS = 8, MOTION = 9 };
-
-/* Upper bounds of the levels' reach, as multiples of the least reach in the run. */
-static const double LEVEL_BOUND[LEVELS] = {1.3, 2.6, 5.2, 10.4, 20.8, 41.6, 83.2, 1e300};
+enum { LEVELS = CANDIDATES_LEVELS, MOTION = 9 };
 
 /* The owned centres of one level on one rank; low > high when there are none. */
 struct level_box {
@@ -58,7 +56,7 @@ static double reach_of(const struct spheres *spheres, int i)
 static int level_of(double reach, double least)
 {
     int level = 0;
-    while (!(reach < least * LEVEL_BOUND[level]) && level < LEVELS - 1)
+    while (!(reach < least * candidates_level_bound[level]) && level < LEVELS - 1)
         level++;
     return level;
 }
