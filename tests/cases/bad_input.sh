@@ -7,13 +7,13 @@ set -uo pipefail
 root=$PWD
 tremie=$BIN/tremie
 quick=1 # seconds; with sanitizers nothing is quick
-[ "${FLAVOUR:-release}" = release ] || quick=15
+[ "${FLAVOUR:-release}" = release ] || quick=45
 cd "$SCRATCH" || exit 1
 
 # refused COMMAND...: status 2 and no run folder; the messages go to `said`.
 refused()
 {
-    timeout 20 "$@" > out 2> said < /dev/null
+    timeout 60 "$@" > out 2> said < /dev/null
     local status=$?
     why=
     [ "$status" = 2 ] || why+=" exit status $status, not 2;"

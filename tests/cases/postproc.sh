@@ -7,17 +7,12 @@ bin=$(cd "$BIN" && pwd)
 python=/usr/bin/python3 # Debian's h5py is for it
 cd "$SCRATCH" || exit 1
 
-# try STATUS COMMAND...: output to `said`; a reason when the status is another.  The tools run without
-# mpirun, where the leak checker does not survive what Open MPI does about a binding policy.
+# try STATUS COMMAND...: output to `said`; a reason when the status is another.
 try()
 {
     local expected=$1 status=0
     shift
-    if [ "$1" = mpirun ]; then
-        timeout 120 "$@" > said 2>&1 < /dev/null || status=$?
-    else
-        timeout 120 env -u OMPI_MCA_hwloc_base_binding_policy "$@" > said 2>&1 < /dev/null || status=$?
-    fi
+    timeout 120 "$@" > said 2>&1 < /dev/null || status=$?
     [ "$status" = "$expected" ] || why+=" $(basename "$1") gives status $status, not $expected;"
 }
 
