@@ -50,15 +50,22 @@ programs := $(if $(wildcard $(main)),$(BIN)/tremie) $(tools)
 unit_sources := $(sort $(wildcard tests/unit/test_*.c))
 unit_tests := $(patsubst tests/unit/%.c,$(BUILD)/tests/%,$(unit_sources))
 
+# A case of verification is tests/verification/case_NAME.c with the other files there, which cases share.
+case_sources := $(sort $(wildcard tests/verification/case_*.c))
+case_shared := $(patsubst %.c,$(BUILD)/%.o,\
+    $(filter-out $(case_sources),$(sort $(wildcard tests/verification/*.c))))
+verification_cases := $(patsubst tests/verification/%.c,$(BUILD)/tests/%,$(case_sources))
+
 flavour_objects := $(flavour_sources:%.c=$(BUILD)/%.o)
 rules := Makefile $(wildcard config/compiler/*.mk)
 
 all_objects := $(library_objects) $(kernel_objects) $(main:%.c=$(BUILD)/%.o) $(tool_shared) \
-    $(tool_sources:%.c=$(BUILD)/%.o) $(unit_sources:%.c=$(BUILD)/%.o) $(flavour_objects)
+    $(tool_sources:%.c=$(BUILD)/%.o) $(unit_sources:%.c=$(BUILD)/%.o) $(case_sources:%.c=$(BUILD)/%.o) \
+    $(case_shared) $(flavour_objects)
 
 # --------------------------------------------------------------------------------------------- goals
 
-.PHONY: all hopper test bench lint help install clean unit_tests
+.PHONY: all hopper test verify bench lint help install clean unit_tests verification_cases
 .DEFAULT_GOAL := all
 
 ##  make              build all programs into bin/
@@ -73,9 +80,15 @@ hopper:
 ##  make test         set up what is missing, build, run all tests (FILTER=word: only some of them)
 test:
 	@config/setup test
-	@$(MAKE) --no-print-directory all unit_tests
+	@$(MAKE) --no-print-directory all unit_tests verification_cases
 	@BUILD='$(BUILD)' BIN='$(BIN)' FLAVOUR='$(FLAVOUR)' CC='$(CC)' CPPFLAGS='$(CPPFLAGS)' \
 	    tests/run $(FILTER)
+
+##  make verify       compare with theory and publications; writes tests/verification/README.md
+verify:
+	@config/setup test
+	@$(MAKE) --no-print-directory verification_cases
+	@BUILD='$(BUILD)' tests/verification/run
 
 ##  make bench        measure speed on one core: a settled bed, beside LIGGGHTS where installed
 bench:
@@ -111,10 +124,13 @@ help:
 
 unit_tests: $(unit_tests)
 
+verification_cases: $(verification_cases)
+
 # --------------------------------------------------------------------------------------------- rules
 
 $(library_objects) $(tool_shared) $(main:%.c=$(BUILD)/%.o) $(tool_sources:%.c=$(BUILD)/%.o) \
-$(unit_sources:%.c=$(BUILD)/%.o): $(BUILD)/%.o: %.c $(rules)
+$(unit_sources:%.c=$(BUILD)/%.o) $(case_sources:%.c=$(BUILD)/%.o) $(case_shared): \
+$(BUILD)/%.o: %.c $(rules)
 	@mkdir -p $(@D)
 	$(call say,compile,$<)$(CC) $(CPPFLAGS) $(CFLAGS) $(march) -MMD -MP -c -o $@ $<
 
@@ -147,6 +163,11 @@ $(foreach source,$(tool_sources),$(eval $(call tool_rule,$(basename $(notdir $(s
 # Tests of what tools share.
 $(filter $(BUILD)/tests/test_postproc%,$(unit_tests)): $(tool_shared)
 $(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(flavour_objects) $(library)
+	@mkdir -p $(@D)
+	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(library) $(LDLIBS)
+
+$(verification_cases): $(BUILD)/tests/%: $(BUILD)/tests/verification/%.o $(case_shared) \
+    $(flavour_objects) $(library)
 	@mkdir -p $(@D)
 	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(library) $(LDLIBS)
 

@@ -3,10 +3,10 @@
 set -euo pipefail
 
 why= guards=
-for header in src/*/*.h postproc/*.h tests/unit/check.h; do
+for header in src/*/*.h postproc/*.h tests/unit/check.h tests/verification/*.h; do
     [ -e "$header" ] || continue
     # shellcheck disable=SC2086 # flags are words
-    echo "#include \"$header\"" | ${CC:-gcc} $CPPFLAGS -I. -std=c11 -Wall -Wextra -Werror -Wno-unused-function \
+    echo "#include \"$header\"" | ${CC:-gcc} $CPPFLAGS -I. -Itests/verification -std=c11 -Wall -Wextra -Werror -Wno-unused-function \
         -Wno-unused-variable -fsyntax-only -x c - 2> "$SCRATCH/said" || why+=" $header: $(head -n 3 "$SCRATCH/said" | tr '\n' ' ');"
     guard=TREMIE_$(sed -e 's|^src/||' -e 's|^tests/unit/|tests/|' -e 's|[/.]|_|g' <<< "$header" | tr '[:lower:]' '[:upper:]')
     grep -qx "#ifndef $guard" "$header" || guards+=" $header lacks $guard;"
