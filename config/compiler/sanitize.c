@@ -4,8 +4,8 @@
  * Open MPI unloads its plug-ins before the leak check, which then cannot name who allocated;
  * with a dlclose that does nothing they stay.  What Open MPI itself never frees, and HDF5 when
  * it meets a damaged file, is suppressed by name.  A program that uses MPI but was not started
- * by mpirun is not checked for leaks: the checker itself crashes there, on the threads that Open
- * MPI then has.  What such runs do is also run under mpirun.
+ * by mpirun is not checked for leaks: the checker itself crashes there, on the threads that
+ * Open MPI then has.  What such runs do is also run under mpirun.
  */
 #include <stdlib.h>
 
