@@ -17,7 +17,7 @@ static void print_entry(const struct arguments_entry *entry)
             ? snprintf(left, sizeof left, "-%c, --%s %s", entry->letter, entry->name, argument)
             : snprintf(left, sizeof left, "--%s %s", entry->name, argument);
     CHECK(n > 0 && (size_t)n < sizeof left, "the option %s has too long a name", entry->name);
-    printf("  %-24s %s", left, entry->help);
+    printf("  %-26s %s", left, entry->help);
     for (int i = 0; entry->kind == ARGUMENTS_CHOICE && entry->choices[i] != NULL; i++)
         printf("%s%s", i == 0 ? ": " : ", ", entry->choices[i]);
     printf("\n");
@@ -29,7 +29,7 @@ static void print_help(const struct arguments_page *page)
     printf("options\n");
     for (int i = 0; i < page->n_entries; i++)
         print_entry(&page->entries[i]);
-    printf("  %-24s %s\n", "--help", "prints this page");
+    printf("  %-26s %s\n", "--help", "prints this page");
 }
 
 static const struct arguments_entry *find_entry(const struct arguments_page *page,

@@ -14,18 +14,20 @@ enum {
     PANEL_HEIGHT = 300,
     LEFT = 86,
     RIGHT = 24,
+    BESIDE = 190, /* for legends right of the panels */
     TOP = 44,
-    GAP = 62,
+    GAP = 66,
     LEGEND_STEP = 17
 };
 
 static const char *const palette[PLOT_COLOURS] = {"#2b6ca3", "#c8553d", "#3d8b5f", "#8a5aa8",
                                                   "#b8862b", "#3a9aa5", "#9a4a6a", "#5c636e"};
 
-/* A panel's place on the page and the numbers at its edges. */
+/* A panel's place on the page and the numbers at its edges, or their logarithms. */
 struct frame {
     double left, right, top, bottom; /* [SVG units] */
     double x[2], y[2];
+    bool log_x, log_y, legend_beside;
 };
 
 void plot_add_curve(struct plot_panel *panel, struct plot_curve curve)
@@ -38,6 +40,12 @@ void plot_add_band(struct plot_panel *panel, struct plot_band band)
 {
     if (panel->n_bands < PLOT_BANDS_MAX)
         panel->bands[panel->n_bands++] = band;
+}
+
+void plot_add_line(struct plot_panel *panel, struct plot_line line)
+{
+    if (panel->n_lines < PLOT_LINES_MAX)
+        panel->lines[panel->n_lines++] = line;
 }
 
 static const char *colour_of(int colour)
@@ -61,19 +69,25 @@ static void write_text(FILE *stream, double x, double y, const char *style, cons
     fputs("</text>\n", stream);
 }
 
-static void extend(double range[2], int n, const double *values)
+static double scaled(bool logarithmic, double value)
 {
-    for (int i = 0; i < n; i++) {
-        if (values[i] < range[0])
-            range[0] = values[i];
-        if (isfinite(values[i]) && values[i] > range[1])
-            range[1] = values[i];
+    return logarithmic ? log10(value) : value;
+}
+
+static void extend(double range[2], bool logarithmic, int n, const double *values)
+{
+    for (int i = 0; values != NULL && i < n; i++) {
+        const double value = scaled(logarithmic, values[i]);
+        if (isfinite(value) && value < range[0])
+            range[0] = value;
+        if (isfinite(value) && value > range[1])
+            range[1] = value;
     }
 }
 
 /* A range that is empty or a single number gets some width; others this share of it as air
- * above, and below where they go below zero. */
-static void relax(double range[2], double air)
+ * above, and below where they go below zero or `below` asks for it. */
+static void relax(double range[2], double air, double below)
 {
     if (!(range[0] <= range[1])) {
         range[0] = 0.0;
@@ -88,44 +102,83 @@ static void relax(double range[2], double air)
         return;
     }
     range[1] += air * width;
-    if (range[0] < 0.0)
+    if (range[0] < 0.0 && below == 0.0)
         range[0] -= air * width;
+    range[0] -= below * width;
 }
 
-static struct frame frame_of(const struct plot_panel *panel, int index)
+static void take_range(double range[2], bool logarithmic, const double asked[2])
 {
+    if (asked[0] == asked[1])
+        return;
+    range[0] = scaled(logarithmic, asked[0]);
+    range[1] = scaled(logarithmic, asked[1]);
+}
+
+static struct frame frame_of(const struct plot *plot, int index)
+{
+    const struct plot_panel *panel = &plot->panels[index];
     const double top = TOP + index * (PANEL_HEIGHT + GAP);
-    struct frame frame = {
-        LEFT, WIDTH - RIGHT, top, top + PANEL_HEIGHT, {INFINITY, -INFINITY}, {0.0, -INFINITY}};
+    const double right = WIDTH - (plot->legend_beside ? BESIDE : RIGHT);
+    struct frame frame = {LEFT,
+                          right,
+                          top,
+                          top + PANEL_HEIGHT,
+                          {INFINITY, -INFINITY},
+                          {panel->log_y ? (double)INFINITY : 0.0, -INFINITY},
+                          panel->log_x,
+                          panel->log_y,
+                          plot->legend_beside};
     double legend = 0.0; /* its height as a share of the panel's */
     for (int i = 0; i < panel->n_curves; i++) {
-        extend(frame.x, panel->curves[i].n, panel->curves[i].x);
-        extend(frame.y, panel->curves[i].n, panel->curves[i].y);
-        legend += panel->curves[i].label != NULL ? (double)LEGEND_STEP / PANEL_HEIGHT : 0.0;
+        const struct plot_curve *curve = &panel->curves[i];
+        extend(frame.x, panel->log_x, curve->n, curve->x);
+        extend(frame.y, panel->log_y, curve->n, curve->y);
+        extend(frame.y, panel->log_y, curve->n, curve->low);
+        extend(frame.y, panel->log_y, curve->n, curve->high);
+        legend += curve->label != NULL ? (double)LEGEND_STEP / PANEL_HEIGHT : 0.0;
     }
-    relax(frame.x, 0.0);
-    relax(frame.y, 0.06 + 1.2 * (legend < 0.5 ? legend : 0.5));
+    if (plot->legend_beside)
+        legend = 0.0;
+    const double side = panel->log_x ? 0.03 : 0.0; /* markers are not cut */
+    relax(frame.x, side, side);
+    relax(frame.y, 0.06 + 1.2 * (legend < 0.5 ? legend : 0.5), panel->log_y ? 0.04 : 0.0);
+    take_range(frame.x, panel->log_x, panel->x_range);
+    take_range(frame.y, panel->log_y, panel->y_range);
     return frame;
 }
 
 static double page_x(const struct frame *frame, double x)
 {
-    const double share = (x - frame->x[0]) / (frame->x[1] - frame->x[0]);
+    const double value = scaled(frame->log_x, x);
+    const double share = (value - frame->x[0]) / (frame->x[1] - frame->x[0]);
     const double inside = share > 0.0 ? (share < 1.0 ? share : 1.0) : 0.0;
     return frame->left + inside * (frame->right - frame->left);
 }
 
 static double page_y(const struct frame *frame, double y)
 {
-    const double share = (y - frame->y[0]) / (frame->y[1] - frame->y[0]);
+    const double value = scaled(frame->log_y, y);
+    const double share = (value - frame->y[0]) / (frame->y[1] - frame->y[0]);
     const double inside = share > 0.0 ? (share < 1.0 ? share : 1.0) : 0.0;
     return frame->bottom - inside * (frame->bottom - frame->top);
 }
 
+static bool can_show(const struct frame *frame, double x, double y)
+{
+    return isfinite(scaled(frame->log_x, x)) && isfinite(scaled(frame->log_y, y));
+}
+
+static struct ticks ticks_of(bool logarithmic, const double range[2], int wanted)
+{
+    return logarithmic ? ticks_of_decades(range[0], range[1])
+                       : ticks_between(range[0], range[1], wanted);
+}
+
 static void write_axes(FILE *stream, const struct plot_panel *panel, const struct frame *frame)
 {
-    const struct ticks across = ticks_between(frame->x[0], frame->x[1], 8);
-    const struct ticks upwards = ticks_between(frame->y[0], frame->y[1], 5);
+    const struct ticks across = ticks_of(frame->log_x, frame->x, 8);
+    const struct ticks upwards = ticks_of(frame->log_y, frame->y, 5);
     for (int i = 0; i < across.n; i++) {
         const double x = page_x(frame, across.values[i]);
         fprintf(stream, "<path d=\"M%.1f %.1fV%.1f\" stroke=\"#e4e7eb\"/>\n", x, frame->top,
@@ -147,6 +200,30 @@ static void write_axes(FILE *stream, const struct plot_panel *panel, const struc
     snprintf(style, sizeof style, "text-anchor=\"middle\" transform=\"rotate(-90 20 %.1f)\"",
              middle);
     write_text(stream, 20, middle, style, panel->y_label);
+    if (panel->heading != NULL)
+        write_text(stream, frame->left, frame->top - 6, "font-weight=\"bold\"", panel->heading);
+}
+
+static void write_line(FILE *stream, const struct frame *frame, const struct plot_line *line)
+{
+    static const char style[] = "stroke=\"#5c636e\" stroke-dasharray=\"2 3\"";
+    const double *range = line->upright ? frame->x : frame->y;
+    const double value = scaled(line->upright ? frame->log_x : frame->log_y, line->at);
+    if (!(value >= range[0] && value <= range[1]))
+        return;
+    if (line->upright) {
+        const double x = page_x(frame, line->at);
+        fprintf(stream, "<path d=\"M%.2f %.1fV%.1f\" %s/>\n", x, frame->top, frame->bottom,
+                style);
+        if (line->label != NULL)
+            write_text(stream, x + 4, frame->top + 12, "font-size=\"11\"", line->label);
+        return;
+    }
+    const double y = page_y(frame, line->at);
+    fprintf(stream, "<path d=\"M%.1f %.2fH%.1f\" %s/>\n", frame->left, y, frame->right, style);
+    if (line->label != NULL)
+        write_text(stream, frame->right - 4, y - 4, "text-anchor=\"end\" font-size=\"11\"",
+                   line->label);
 }
 
 static void write_band(FILE *stream, const struct frame *frame, const struct plot_band *band)
@@ -159,12 +236,54 @@ static void write_band(FILE *stream, const struct frame *frame, const struct plo
         left, top, right - left, bottom - top, colour_of(band->colour));
 }
 
+/* Where a curve's values scatter: a band, or a bar at each. */
+static void write_scatter(FILE *stream, const struct frame *frame,
+                          const struct plot_curve *curve)
+{
+    if (curve->low == NULL || curve->high == NULL)
+        return;
+    for (int i = 0; curve->bars && i < curve->n; i++) {
+        if (!can_show(frame, curve->x[i], curve->high[i]))
+            continue;
+        const double x = page_x(frame, curve->x[i]);
+        const double low = page_y(frame, curve->low[i]), high = page_y(frame, curve->high[i]);
+        fprintf(stream, "<path d=\"M%.2f %.2fV%.2fM%.2f %.2fh6M%.2f %.2fh6\" stroke=\"%s\"/>\n",
+                x, low, high, x - 3, low, x - 3, high, colour_of(curve->colour));
+    }
+    if (curve->bars)
+        return;
+    char pen = 'M';
+    fputs("<path d=\"", stream);
+    for (int k = 0; k < 2 * curve->n; k++) {
+        const int i = k < curve->n ? k : 2 * curve->n - 1 - k;
+        if (!can_show(frame, curve->x[i], curve->high[i]))
+            continue;
+        fprintf(stream, "%c%.2f %.2f", pen, page_x(frame, curve->x[i]),
+                page_y(frame, k < curve->n ? curve->high[i] : curve->low[i]));
+        pen = 'L';
+    }
+    fprintf(stream, "\" fill=\"%s\" fill-opacity=\"0.16\"/>\n", colour_of(curve->colour));
+}
+
+static void write_markers(FILE *stream, const struct frame *frame,
+                          const struct plot_curve *curve)
+{
+    for (int i = 0; curve->markers && i < curve->n; i++)
+        if (can_show(frame, curve->x[i], curve->y[i]))
+            fprintf(
+                stream, "<circle cx=\"%.2f\" cy=\"%.2f\" r=\"3\" fill=\"%s\" stroke=\"%s\"/>\n",
+                page_x(frame, curve->x[i]), page_y(frame, curve->y[i]),
+                curve->dashed ? "#ffffff" : colour_of(curve->colour), colour_of(curve->colour));
+}
+
 static void write_curve(FILE *stream, const struct frame *frame, const struct plot_curve *curve)
 {
+    if (curve->bare)
+        return;
     char pen = 'M'; /* lifted where a value is not a number */
     fputs("<path d=\"", stream);
     for (int i = 0; i < curve->n; i++) {
-        if (!isfinite(curve->x[i]) || !isfinite(curve->y[i])) {
+        if (!can_show(frame, curve->x[i], curve->y[i])) {
             pen = 'M';
             continue;
         }
@@ -183,29 +302,42 @@ static void write_curve(FILE *stream, const struct frame *frame, const struct pl
 static void write_legend(FILE *stream, const struct plot_panel *panel,
                          const struct frame *frame)
 {
+    const double left = frame->legend_beside ? frame->right + 10 : frame->left + 12;
     double y = frame->top + 14;
     for (int i = 0; i < panel->n_curves; i++) {
         const struct plot_curve *curve = &panel->curves[i];
         if (curve->label == NULL)
             continue;
-        fprintf(stream, "<path d=\"M%.1f %.1fh24\" stroke=\"%s\" stroke-width=\"2\"%s/>\n",
-                frame->left + 12, y, colour_of(curve->colour),
-                curve->dashed ? " stroke-dasharray=\"6 4\"" : "");
-        write_text(stream, frame->left + 43, y + 4,
+        const char *colour = colour_of(curve->colour);
+        if (!curve->bare)
+            fprintf(stream, "<path d=\"M%.1f %.1fh24\" stroke=\"%s\" stroke-width=\"2\"%s/>\n",
+                    left, y, colour, curve->dashed ? " stroke-dasharray=\"6 4\"" : "");
+        if (curve->markers)
+            fprintf(stream,
+                    "<circle cx=\"%.1f\" cy=\"%.1f\" r=\"3\" fill=\"%s\" stroke=\"%s\"/>\n",
+                    left + 12, y, curve->dashed ? "#ffffff" : colour, colour);
+        write_text(stream, left + 31, y + 4,
                    "paint-order=\"stroke\" stroke=\"#ffffff\" stroke-width=\"3\"",
                    curve->label);
         y += LEGEND_STEP;
     }
 }
 
-static void write_panel(FILE *stream, const struct plot_panel *panel, int index)
+static void write_panel(FILE *stream, const struct plot *plot, int index)
 {
-    const struct frame frame = frame_of(panel, index);
+    const struct plot_panel *panel = &plot->panels[index];
+    const struct frame frame = frame_of(plot, index);
     write_axes(stream, panel, &frame);
     for (int i = 0; i < panel->n_bands; i++)
         write_band(stream, &frame, &panel->bands[i]);
     for (int i = 0; i < panel->n_curves; i++)
+        write_scatter(stream, &frame, &panel->curves[i]);
+    for (int i = 0; i < panel->n_lines; i++)
+        write_line(stream, &frame, &panel->lines[i]);
+    for (int i = 0; i < panel->n_curves; i++) {
         write_curve(stream, &frame, &panel->curves[i]);
+        write_markers(stream, &frame, &panel->curves[i]);
+    }
     write_legend(stream, panel, &frame);
 }
 
@@ -225,7 +357,7 @@ int plot_write_svg(const struct plot *plot, const char *path)
         WIDTH, height, WIDTH, height, WIDTH, height);
     write_text(stream, LEFT, 26, "font-size=\"16\"", plot->title);
     for (int i = 0; i < plot->n_panels; i++)
-        write_panel(stream, &plot->panels[i], i);
+        write_panel(stream, plot, i);
     fputs("</svg>\n", stream);
     const bool failed = ferror(stream) != 0;
     if (fclose(stream) != 0 || failed) {

@@ -151,3 +151,69 @@ int sheet_write_csv(const struct sheet *sheet, const char *path)
     }
     return REPORT_FINISHED;
 }
+
+/* Takes a cell off a line, in place: what stands before a comma, or between quotes.  Returns
+ * where the next begins; NULL after the last. */
+static char *take_csv_cell(char *at, char **cell)
+{
+    char *to = *cell = at;
+    const bool quoted = *at == '"';
+    for (at += quoted; *at != '\0' && (quoted || *at != ','); at++) {
+        if (quoted && *at == '"' && *++at != '"')
+            break;
+        *to++ = *at;
+    }
+    const bool more = *at == ',';
+    *to = '\0';
+    return more ? at + 1 : NULL;
+}
+
+static bool read_csv_line(struct sheet *sheet, char *line, bool first)
+{
+    int n = 0;
+    line[strcspn(line, "\r\n")] = '\0';
+    for (char *next = line, *cell; next != NULL; n++) {
+        next = take_csv_cell(next, &cell);
+        if (first)
+            sheet_heading(sheet, "%s", cell);
+        else
+            sheet_cell(sheet, "%s", cell);
+    }
+    return n == sheet->n_columns;
+}
+
+int sheet_read_csv(struct sheet *sheet, const char *path)
+{
+    FILE *stream = fopen(path, "r");
+    if (stream == NULL) {
+        report_error("cannot read %s: %s; give a CSV file", path, strerror(errno));
+        return REPORT_STORAGE;
+    }
+    char *line = NULL;
+    size_t capacity = 0;
+    bool fine = true;
+    for (int n = 1; fine && getline(&line, &capacity, stream) >= 0; n++) {
+        if (line[0] == '#' || line[strspn(line, " \t\r\n")] == '\0')
+            continue;
+        fine = read_csv_line(sheet, line, sheet->n_columns == 0);
+        if (!fine)
+            report_error("%s:%d: this row has another number of cells than there are headings; "
+                         "as many are expected",
+                         path, n);
+    }
+    free(line);
+    fclose(stream);
+    if (fine && sheet->n_columns == 0) {
+        report_error("%s: there is no line in it; headings and rows are expected", path);
+        fine = false;
+    }
+    return fine ? REPORT_FINISHED : REPORT_STORAGE;
+}
+
+int sheet_column(const struct sheet *sheet, const char *heading)
+{
+    for (int c = 0; c < sheet->n_columns; c++)
+        if (strcmp(sheet->headings[c], heading) == 0)
+            return c;
+    return -1;
+}

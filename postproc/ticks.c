@@ -44,3 +44,31 @@ struct ticks ticks_between(double least, double most, int wanted)
     }
     return ticks;
 }
+
+static void add_power(struct ticks *ticks, double least, double most, double lead, int power)
+{
+    const double at = log10(lead) + power, slack = 1e-9 * (most - least);
+    if (at < least - slack || at > most + slack || ticks->n >= TICKS_MAX)
+        return;
+    ticks->values[ticks->n] = lead * pow(10.0, power);
+    if (power < -3 || power > 4)
+        snprintf(ticks->texts[ticks->n], TICKS_TEXT_SIZE, "%.0fe%d", lead, power);
+    else
+        snprintf(ticks->texts[ticks->n], TICKS_TEXT_SIZE, "%g", ticks->values[ticks->n]);
+    ticks->n++;
+}
+
+struct ticks ticks_of_decades(double least, double most)
+{
+    struct ticks ticks = {0};
+    const int first = (int)floor(least), last = (int)ceil(most);
+    const int stride = 1 + (last - first) / (TICKS_MAX - 2);
+    for (int power = first; power <= last; power += stride) {
+        add_power(&ticks, least, most, 1.0, power);
+        if (most - least > 2.5)
+            continue;
+        add_power(&ticks, least, most, 2.0, power);
+        add_power(&ticks, least, most, 5.0, power);
+    }
+    return ticks;
+}

@@ -12,6 +12,9 @@ struct ticks {
 
 /* About `wanted` (2 to 8) ticks within [least, most], least < most. */
 struct ticks ticks_between(double least, double most, int wanted);
+/* Along a logarithmic axis from 10^least to 10^most: powers of ten, with 2 and 5 times them
+ * where it is short. */
+struct ticks ticks_of_decades(double least, double most);
 /* The least round number (1, 2, 2.5, 5 times a power of ten) that is not below `value` > 0. */
 double ticks_round_up(double value);
 

@@ -74,7 +74,7 @@ duller=$(find duller/checkpoints -name '*.h5' | sort | tail -n 1)
 
 # ------------------------------------------------------------------------- command lines
 
-for tool in discharge runstats compare info render; do
+for tool in discharge runstats compare info render chart; do
     try 0 "$bin/tremie-$tool" --help
     says "usage: tremie-$tool" "Exit status"
     try 2 "$bin/tremie-$tool"
@@ -198,3 +198,49 @@ try 4 "$bin/tremie-render" bare_copy -o none.png --color rank
 says "error: cannot tell whose spheres bare_copy holds"
 [ ! -e none.png ] || why+=" a picture of unknown ranks;"
 result render
+
+# ---------------------------------------------------------------------------------- chart
+
+cat > points.csv << 'END'
+# a comment
+steps,law,"damping, how",error,low,high
+10,hertz,late,0.1,0.05,0.2
+20,hertz,late,0.04,0.02,0.08
+20,hertz,ahead,0.01,0.005,0.02
+40,linear,ahead,nan,0,0
+80,linear,ahead,0.001,0,0.004
+80,linear,never,,,
+END
+# marks FILE.svg: how many dots, curves and bands it has.
+marks()
+{
+    "$python" - "$1" << 'END'
+import sys, xml.etree.ElementTree as t
+p = list(t.parse(sys.argv[1]).iter())
+of = lambda tag, key, value: sum(e.tag.endswith(tag) and e.get(key) == value for e in p)
+print(sum(e.tag.endswith("circle") for e in p), of("path", "stroke-width", "1.6"), of("path", "fill-opacity", "0.16"))
+END
+}
+try 0 "$bin/tremie-chart" points.csv -o chart.svg --x steps --y error --low low --high high --group law \
+    --log xy --markers --title 'Errors & <signs>'
+# Dots: two curves of 3 and 1 points and their legends; a band each.
+[ "$(marks chart.svg)" = "6 2 2" ] || why+=" dots, curves and bands: $(marks chart.svg);"
+try 0 "$bin/tremie-chart" points.csv -o panels.svg --x steps --y 'error=E;low=L,high' --panel law \
+    --points low --log 'xy;x' --mark-x 20=here --mark-y '0.01=there;' --x-range 5:100 --y-label 'axis E;axis L'
+for word in '>axis E<' '>L<' '>high<' '>here<' '>there<' '>hertz<' '>linear<'; do
+    grep -qF "$word" panels.svg || why+=" no $word in the picture;"
+done
+try 1 "$bin/tremie-chart" points.csv -o none.svg --x steps --y error --where law=cohesive
+try 2 "$bin/tremie-chart" points.csv -o none.svg --x steps --y mood
+says 'error: points.csv has no column "mood"; see its first line'
+try 2 "$bin/tremie-chart" points.csv -o none.svg --x law --y error
+says 'error: points.csv: "hertz" is to be drawn; a number is expected'
+try 2 "$bin/tremie-chart" points.csv -o none.svg --x steps --y error --x-range 5
+try 2 "$bin/tremie-chart" points.csv --x steps --y error
+try 4 "$bin/tremie-chart" nowhere.csv -o none.svg --x steps --y error
+try 4 "$bin/tremie-chart" points.csv -o nowhere/x.svg --x steps --y error
+echo '1,2' >> points.csv
+try 4 "$bin/tremie-chart" points.csv -o none.svg --x steps --y error
+says "error: points.csv:9: this row has another number of cells"
+[ ! -e none.svg ] || why+=" a picture of nothing;"
+result chart

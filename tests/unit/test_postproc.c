@@ -14,6 +14,7 @@
 #include "../../postproc/font.h"
 #include "../../postproc/image.h"
 #include "../../postproc/owners.h"
+#include "../../postproc/plot.h"
 #include "../../postproc/records.h"
 #include "../../postproc/sheet.h"
 #include "../../postproc/steady.h"
@@ -135,6 +136,17 @@ TEST(ticks_are_round)
     EXPECT_NEAR(ticks_round_up(2.0), 2.0, 1e-12);
 }
 
+TEST(ticks_of_logarithms_are_round)
+{
+    const struct ticks wide = ticks_of_decades(-5.2, 1.1);
+    EXPECT(wide.n == 7);
+    EXPECT_STRING(wide.texts[0], "1e-5");
+    EXPECT_STRING(wide.texts[6], "10");
+    const struct ticks narrow = ticks_of_decades(log10(15.0), log10(120.0));
+    EXPECT(narrow.n == 3); /* 20, 50, 100 */
+    EXPECT_NEAR(narrow.values[1], 50.0, 1e-12);
+}
+
 TEST(every_character_has_a_glyph)
 {
     for (int c = 1; c < 256; c++) {
@@ -171,6 +183,57 @@ TEST(sheets_align_their_columns)
     EXPECT_STRING(text, "run          time\na long name     7\n");
     free(text);
     sheet_clear(&sheet);
+}
+
+TEST(sheets_are_read_back)
+{
+    char path[] = "/tmp/tremie-sheet.XXXXXX";
+    close(mkstemp(path));
+    struct sheet sheet, read;
+    sheet_init(&sheet);
+    sheet_init(&read);
+    sheet_heading(&sheet, "name, of what");
+    sheet_heading(&sheet, "value");
+    sheet_cell(&sheet, "says \"no\"");
+    sheet_cell(&sheet, "%d", 7);
+    sheet_cell(&sheet, " ");
+    sheet_cell(&sheet, "%s", "");
+    EXPECT(sheet_write_csv(&sheet, path) == REPORT_FINISHED);
+    EXPECT(sheet_read_csv(&read, path) == REPORT_FINISHED);
+    EXPECT(read.n_columns == 2 && read.n_cells == 4);
+    for (int i = 0; i < 2; i++)
+        EXPECT_STRING(read.headings[i], sheet.headings[i]);
+    for (int i = 0; i < 4; i++)
+        EXPECT_STRING(read.cells[i], sheet.cells[i]);
+    EXPECT(sheet_column(&read, "value") == 1 && sheet_column(&read, "name") == -1);
+    sheet_clear(&read);
+    sheet_clear(&sheet);
+    unlink(path);
+}
+
+/* The panel spans x from 86 to 836 and y from 44 to 344 units of the page. */
+TEST(logarithmic_axes_place_decades_evenly)
+{
+    char path[] = "/tmp/tremie-plot.XXXXXX";
+    close(mkstemp(path));
+    const double x[] = {10.0, -1.0}, y[] = {100.0, 1.0};
+    struct plot plot = {.title = "", .n_panels = 1};
+    plot.panels[0] = (struct plot_panel){.x_label = "",
+                                         .y_label = "",
+                                         .log_x = true,
+                                         .log_y = true,
+                                         .x_range = {1.0, 100.0},
+                                         .y_range = {1.0, 1000.0}};
+    plot_add_curve(&plot.panels[0],
+                   (struct plot_curve){.n = 2, .x = x, .y = y, .markers = true, .bare = true});
+    EXPECT(plot_write_svg(&plot, path) == REPORT_FINISHED);
+    FILE *stream = fopen(path, "r");
+    EXPECT(stream != NULL);
+    char *text = text_of(stream), *dot = strstr(text, "<circle cx=\"461.00\" cy=\"144.00\"");
+    EXPECT(dot != NULL);
+    EXPECT(strstr(dot + 1, "<circle") == NULL); /* -1 has no logarithm */
+    free(text);
+    unlink(path);
 }
 
 /* ---------------------------------------------------------------------------- command lines */
