@@ -1,0 +1,125 @@
+/*
+ * Restitution that is asked for comes out, and a damped contact goes as deep as the oscillator
+ * of THEORY.md (1.21) does.
+ *
+ * Where within a step surfaces first touch is chance in a run, and changes what a damped
+ * impact returns; so what is compared is the mean over that phase, and the spread is a row of
+ * its own.
+ */
+#include <math.h>
+#include <stdio.h>
+
+#include "impact.h"
+#include "model/restitution.h"
+#include "verify.h"
+
+enum { PHASES = 16, STEPS = 500 };
+
+struct solid {
+    const char *name;
+    double young, poisson, density;
+};
+
+static const struct solid oxide = {"aluminium_oxide", 380e9, 0.23, 4000.0},
+                          iron = {"cast_iron", 100e9, 0.25, 7000.0};
+static const double RADIUS = 2.5e-3, SPEED = 3.9, RIGID = 1e15;
+
+struct spread {
+    double mean, least, most, deepest;
+};
+
+/* Impacts on a rigid plane at PHASES phases, `steps` to an elastic one. */
+static struct spread impacts(const struct solid *solid, double restitution, int steps)
+{
+    char rest[512];
+    snprintf(rest, sizeof rest,
+             "materials:\n  ball: {density: %g, young: %g, poisson: %g}\n"
+             "  wall: {density: 7850, young: %g, poisson: 0.3}\n"
+             "contact:\n  pairs:\n    - {between: [ball, wall], friction: 0, restitution: %g}\n"
+             "    - {between: [ball, ball], friction: 0, restitution: 1}\n",
+             solid->density, solid->young, solid->poisson, RIGID, restitution);
+    const struct impact_hertz hertz =
+        impact_hertz(impact_modulus(solid->young, solid->poisson, RIGID, 0.3), RADIUS,
+                     impact_mass(solid->density, RADIUS), SPEED);
+    struct impact impact = {.rest = rest,
+                            .material = {"ball", "wall"},
+                            .radius = {RADIUS, 0.0},
+                            .velocity = {{0.0, 0.0, -SPEED}},
+                            .dt = hertz.duration / steps};
+    struct spread spread = {0.0, 1e300, -1e300, 0.0};
+    for (int p = 0; p < PHASES; p++) {
+        impact.phase = (p + 0.5) / PHASES;
+        const struct impact_result result = impact_run(&impact);
+        const double out = result.velocity[0].z / SPEED;
+        spread.mean += out / PHASES;
+        spread.deepest += result.overlap_max / hertz.overlap / PHASES;
+        spread.least = out < spread.least ? out : spread.least;
+        spread.most = out > spread.most ? out : spread.most;
+    }
+    return spread;
+}
+
+static void compare(const struct solid *solid, const char *name)
+{
+    static const double asked[] = {0.2, 0.4, 0.6, 0.8, 1.0};
+    for (int k = 0; k < 5; k++) {
+        char quantity[128];
+        const struct spread spread = impacts(solid, asked[k], STEPS);
+        snprintf(quantity, sizeof quantity, "%s, asked for %g: restitution", name, asked[k]);
+        verify_row(quantity, "", asked[k], spread.mean, 1e-3, VERIFY_ABSOLUTE,
+                   "published at 500 steps a contact");
+    }
+}
+
+static void compare_depth(void)
+{
+    static const double asked[] = {0.2, 0.5, 0.8};
+    for (int k = 0; k < 3; k++) {
+        char quantity[128];
+        const double beta = restitution_damping(asked[k]);
+        const double deepest = exp(-0.8 * beta / sqrt(1.0 - beta * beta) * acos(beta));
+        const struct spread spread = impacts(&oxide, asked[k], STEPS);
+        snprintf(quantity, sizeof quantity,
+                 "aluminium oxide, asked for %g: largest overlap over the elastic one",
+                 asked[k]);
+        verify_row(quantity, "", deepest, spread.deepest, 1e-3, VERIFY_RELATIVE,
+                   "as the restitution's");
+    }
+}
+
+static void compare_spread(void)
+{
+    static const int steps[] = {20, 40, 80};
+    static const double most[] = {0.007, 0.003, 0.001};
+    for (int k = 0; k < 3; k++) {
+        double widest = 0.0, bias = 0.0;
+        char quantity[128];
+        for (int e = 2; e <= 10; e += 2) {
+            const struct spread spread = impacts(&oxide, 0.1 * e, steps[k]);
+            const double half = 0.5 * (spread.most - spread.least);
+            widest = half > widest ? half : widest;
+            bias = fabs(spread.mean - 0.1 * e) > bias ? fabs(spread.mean - 0.1 * e) : bias;
+        }
+        snprintf(quantity, sizeof quantity,
+                 "%d steps a contact, asked for .2 to 1: half the spread over the phase",
+                 steps[k]);
+        verify_row(quantity, "", most[k], widest, 0.0005, VERIFY_AT_MOST,
+                   "stated in THEORY.md to one digit");
+        snprintf(quantity, sizeof quantity,
+                 "%d steps a contact, asked for .2 to 1: largest error of the mean", steps[k]);
+        verify_row(quantity, "", most[k], bias, 0.0, VERIFY_AT_MOST, "less than the spread");
+    }
+}
+
+int main(int argc, char **argv)
+{
+    verify_begin(argc, argv, "Restitution",
+                 "set-up: Chung and Ooi 2011, case 3; the job's restitution");
+    compare(&oxide, "aluminium oxide");
+    compare(&iron, "cast iron");
+    verify_source("closed form of (1.21)");
+    compare_depth();
+    verify_source("THEORY.md, section 1.2");
+    compare_spread();
+    return verify_end();
+}
