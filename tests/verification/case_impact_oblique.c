@@ -128,11 +128,52 @@ static void case_6(void)
     }
 }
 
+/* Two equal spheres, slowly, so that their normal hardly turns meanwhile. */
+static void spheres(double degrees)
+{
+    static const struct solid oxide = {2.5e-3, 380e9, 0.23, 4000.0, 0.092, 0.98};
+    const double speed = 0.1, mu = oxide.friction, e = oxide.restitution;
+    const double v_n = speed * cos(degrees * DEGREE), v_t = speed * sin(degrees * DEGREE);
+    char rest[512], name[2][96];
+    snprintf(rest, sizeof rest,
+             "materials:\n  ball: {density: %g, young: %g, poisson: %g}\n"
+             "contact:\n  pairs:\n"
+             "    - {between: [ball, ball], friction: %g, restitution: %g}\n",
+             oxide.density, oxide.young, oxide.poisson, mu, e);
+    const struct impact_hertz hertz =
+        impact_hertz(impact_modulus(oxide.young, oxide.poisson, oxide.young, oxide.poisson),
+                     0.5 * oxide.radius, 0.5 * impact_mass(oxide.density, oxide.radius), v_n);
+    const struct impact impact = {
+        .rest = rest,
+        .material = {"ball", "ball"},
+        .radius = {oxide.radius, oxide.radius},
+        .velocity = {{0.5 * v_t, 0.0, -0.5 * v_n}, {-0.5 * v_t, 0.0, 0.5 * v_n}},
+        .dt = hertz.duration / 1000.0,
+        .phase = 0.5};
+    const struct impact_result result = impact_run(&impact);
+    /* How far the line of centres turns, times what it mixes into each. */
+    const double turned = 0.5 * v_t * hertz.duration / oxide.radius;
+    snprintf(name[0], sizeof name[0],
+             "two spheres, %g degrees from the normal: tangential restitution", degrees);
+    verify_row(name[0], "", 1.0 - mu * (1.0 + e) / tan(degrees * DEGREE),
+               (result.velocity[0].x - result.velocity[1].x) / v_t,
+               2.0 * turned / tan(degrees * DEGREE) + 1e-5, VERIFY_RELATIVE,
+               "the line of centres turns by v_t T/2R");
+    snprintf(name[1], sizeof name[1],
+             "two spheres, %g degrees from the normal: angular velocity", degrees);
+    verify_row(name[1], "rad/s", 1.25 * mu * (1.0 + e) * v_n / oxide.radius, result.spin[0].y,
+               turned * (1.0 + tan(degrees * DEGREE)) + 0.5 * hertz.overlap / oxide.radius,
+               VERIFY_RELATIVE, "turning mixes v_t into v_n; the lever arm is R - overlap/2");
+}
+
 int main(int argc, char **argv)
 {
     verify_begin(argc, argv, "Oblique impact", "");
     case_4();
     case_5();
     case_6();
+    verify_source("momentum, sliding throughout");
+    spheres(45.0);
+    spheres(70.0);
     return verify_end();
 }

@@ -71,6 +71,42 @@ static void compare(const struct solid *solid, const char *name)
     }
 }
 
+/* Two spheres of unlike materials and sizes, at PHASES phases. */
+static void compare_pair(double radius_0, double radius_1, double restitution)
+{
+    char rest[512], quantity[128];
+    snprintf(
+        rest, sizeof rest,
+        "materials:\n  oxide: {density: %g, young: %g, poisson: %g}\n"
+        "  iron: {density: %g, young: %g, poisson: %g}\n"
+        "contact:\n  pairs:\n    - {between: [oxide, iron], friction: 0, restitution: %g}\n"
+        "    - {between: [oxide, oxide], friction: 0, restitution: 1}\n"
+        "    - {between: [iron, iron], friction: 0, restitution: 1}\n",
+        oxide.density, oxide.young, oxide.poisson, iron.density, iron.young, iron.poisson,
+        restitution);
+    const double mass = 1.0 / (1.0 / impact_mass(oxide.density, radius_0) +
+                               1.0 / impact_mass(iron.density, radius_1));
+    const struct impact_hertz hertz =
+        impact_hertz(impact_modulus(oxide.young, oxide.poisson, iron.young, iron.poisson),
+                     1.0 / (1.0 / radius_0 + 1.0 / radius_1), mass, SPEED);
+    struct impact impact = {.rest = rest,
+                            .material = {"oxide", "iron"},
+                            .radius = {radius_0, radius_1},
+                            .velocity = {{0.0, 0.0, -0.75 * SPEED}, {0.0, 0.0, 0.25 * SPEED}},
+                            .dt = hertz.duration / STEPS};
+    double out = 0.0;
+    for (int p = 0; p < PHASES; p++) {
+        impact.phase = (p + 0.5) / PHASES;
+        const struct impact_result result = impact_run(&impact);
+        out += (result.velocity[0].z - result.velocity[1].z) / SPEED / PHASES;
+    }
+    snprintf(quantity, sizeof quantity,
+             "oxide of %g mm on iron of %g mm, asked for %g: restitution", 1e3 * radius_0,
+             1e3 * radius_1, restitution);
+    verify_row(quantity, "", restitution, out, 1e-3, VERIFY_ABSOLUTE,
+               "published at 500 steps a contact");
+}
+
 static void compare_depth(void)
 {
     static const double asked[] = {0.2, 0.5, 0.8};
@@ -117,6 +153,9 @@ int main(int argc, char **argv)
                  "set-up: Chung and Ooi 2011, case 3; the job's restitution");
     compare(&oxide, "aluminium oxide");
     compare(&iron, "cast iron");
+    compare_pair(RADIUS, RADIUS, 0.5);
+    compare_pair(RADIUS, 20.0 * RADIUS, 0.3);
+    compare_pair(20.0 * RADIUS, RADIUS, 0.8);
     verify_source("closed form of (1.21)");
     compare_depth();
     verify_source("THEORY.md, section 1.2");
