@@ -399,8 +399,9 @@ static void gather_group(const struct step *step, int begin, int end)
     facet_local_search(local, group, end - begin, mesh, centre, radius);
     for (int t = 0; t < local->n_touches; t++) {
         const struct facet_local_touch *touch = &local->touches[t];
-        if (touch->stands)
-            add_contact(step, begin + touch->entry, &touch->at, radius - touch->at.distance);
+        if (facet_local_stands(local, t))
+            add_contact(step, begin + touch->entry, &touch->acts_at,
+                        radius - touch->acts_at.distance);
     }
     for (int e = 0; e < local->n_ended; e++) {
         struct facet_contact *ended = &group[local->ended[e]];

@@ -7,14 +7,13 @@
  * closest point of each such feature *in its own region*: a face holds what projects into it,
  * an edge what projects onto it and lies outside its adjoining faces' prisms, a vertex the
  * rest. So a sphere has one contact on a convex edge, one a wall in a concave corner. Contacts
- * of one sphere with one body whose normals differ by less than 15 degrees are one contact: the
- * deeper stands, the one that holds history stands until another is deeper by a hundredth of
- * the overlap. A contact whose point lies on or behind the tangent plane of a deeper one is
- * none: it is the edge of a neighbour in the same plane, or the far side of a thin body.
- * History belongs to (sphere, body, feature); a feature that becomes active takes over the
- * history of the feature of the same sphere and body that was active the step before, is not
- * any more, and has nearly the same normal (rotated with the normal), so nothing jumps when a
- * sphere rolls over a seam.
+ * of one sphere with one body whose normals differ by less than 15 degrees or whose patches
+ * overlap are one contact (THEORY.md 2.2). A contact whose point lies on or behind the tangent
+ * plane of a deeper one is none: it is the edge of a neighbour in the same plane, or the far
+ * side of a thin body. History belongs to (sphere, body, feature); a feature that becomes
+ * active takes over the history of the feature of the same sphere and body that was active the
+ * step before, is not any more, and is the same contact (rotated with the normal), so nothing
+ * jumps when a sphere rolls over a seam.
  *
  * All of this follows from the touching contacts' history and from where things are, never from
  * what else is listed: lists made at other moments give the same bits.

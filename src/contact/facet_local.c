@@ -8,8 +8,17 @@
 
 /* Normals this near to each other (cosine of 15 deg) are the same contact's. */
 static const double SAME_NORMAL = 0.9659258262890683;
-/* A standing contact counts as this much deeper, so that two do not take turns. */
+/* Nor may normals differ by more than this (cosine of 60 deg) where patches overlap. */
+static const double NOT_OPPOSITE = 0.5;
+/* Two that stood are two until they are nearer than this part of where one becomes two. */
+static const double HOLDS_APART = 0.9;
+/* A standing contact counts as this much deeper, so that memory does not go to and fro. */
 static const double HOLDS_ON = 1.01;
+/* Normals turn while depths differ by less than this part of them. Less would make a seam
+ * stiffer along the wall than the wall is across: by 1 / (3 BLEND) of the angle's square. */
+static const double BLEND = 0.1;
+/* Two normals this near (1 - cosine) are those of one place, held by two features. */
+static const double SAME_PLACE = 1e-13;
 /* Height over a tangent plane that counts as in it, in radii: rounding, and no more. */
 static const double IN_PLANE = 1e-6;
 
@@ -46,7 +55,8 @@ static void find_touches(struct facet_local *local, const struct facet_contact *
             const double overlap = radius - touch->at.distance;
             touch->entry = k;
             touch->claim = holds_history(&group[k]) ? HOLDS_ON * overlap : overlap;
-            touch->settled = touch->stands = false;
+            touch->stands_in = -1;
+            touch->acts_at = touch->at;
             local->n_touches++;
         } else if (holds_history(&group[k])) {
             local->ended[local->n_ended++] = k;
@@ -54,23 +64,45 @@ static void find_touches(struct facet_local *local, const struct facet_contact *
     }
 }
 
-/* Is `other` the same contact as the one that stands: nearly the same normal, or nothing of it
- * rises above the plane that the standing one touches? */
-static bool is_same_contact(const struct facet_local_touch *standing,
-                            const struct facet_local_touch *other, double radius)
+/* Are patches nearer than a part of the sum of their radii, sqrt(R overlap) each (1.4)? */
+static bool patches_overlap(const struct contact_geometry *a, double overlap_a,
+                            const struct contact_geometry *b, double overlap_b, double radius,
+                            double part)
 {
-    const struct vec3 apart = vec3_sub(other->at.point, standing->at.point);
-    return vec3_dot(standing->at.normal, other->at.normal) > SAME_NORMAL ||
-           vec3_dot(standing->at.normal, apart) <= IN_PLANE * radius;
+    const struct vec3 apart = vec3_sub(b->point, a->point);
+    const double sum_squared =
+        radius * (overlap_a + overlap_b + 2.0 * sqrt(overlap_a * overlap_b));
+    return vec3_dot(a->normal, b->normal) > NOT_OPPOSITE &&
+           vec3_dot(apart, apart) < part * part * sum_squared;
 }
 
-static struct facet_local_touch *deepest_unsettled(const struct facet_local *local)
+/* Settles `other` if it is the same contact as touch d, which stands: nearly the same normal,
+ * overlapping patches, or nothing of it rises above the plane that d touches. */
+static void silence(struct facet_local *local, const struct facet_contact *group, int d,
+                    struct facet_local_touch *other, double radius)
 {
-    struct facet_local_touch *deepest = NULL;
+    const struct facet_local_touch *deepest = &local->touches[d];
+    const struct vec3 apart = vec3_sub(other->at.point, deepest->at.point);
+    const bool stood_apart =
+        holds_history(&group[deepest->entry]) && holds_history(&group[other->entry]);
+    const bool is_hidden = vec3_dot(deepest->at.normal, apart) <= IN_PLANE * radius;
+    const bool is_near =
+        vec3_dot(deepest->at.normal, other->at.normal) > SAME_NORMAL ||
+        patches_overlap(&deepest->at, radius - deepest->at.distance, &other->at,
+                        radius - other->at.distance, radius, stood_apart ? HOLDS_APART : 1.0);
+    if (is_hidden || is_near)
+        other->stands_in = d;
+    other->one_with = is_near;
+}
+
+static int deepest_unsettled(const struct facet_local *local)
+{
+    int deepest = -1;
     for (int t = 0; t < local->n_touches; t++) {
-        struct facet_local_touch *touch = &local->touches[t];
-        if (!touch->settled && (deepest == NULL || touch->claim > deepest->claim))
-            deepest = touch;
+        const struct facet_local_touch *touch = &local->touches[t];
+        if (touch->stands_in < 0 &&
+            (deepest < 0 || touch->claim > local->touches[deepest].claim))
+            deepest = t;
     }
     return deepest;
 }
@@ -79,33 +111,112 @@ static struct facet_local_touch *deepest_unsettled(const struct facet_local *loc
 static void choose_standing(struct facet_local *local, const struct facet_contact *group,
                             double radius)
 {
-    struct facet_local_touch *deepest;
-    while ((deepest = deepest_unsettled(local)) != NULL) {
-        deepest->settled = deepest->stands = true;
-        for (int t = 0; t < local->n_touches; t++) {
-            struct facet_local_touch *other = &local->touches[t];
-            if (!other->settled && is_same_contact(deepest, other, radius))
-                other->settled = true;
-        }
+    int d;
+    while ((d = deepest_unsettled(local)) >= 0) {
+        local->touches[d].stands_in = d;
+        local->touches[d].one_with = true;
+        for (int t = 0; t < local->n_touches; t++)
+            if (local->touches[t].stands_in < 0)
+                silence(local, group, d, &local->touches[t], radius);
     }
     for (int t = 0; t < local->n_touches; t++) {
         const struct facet_local_touch *touch = &local->touches[t];
-        if (!touch->stands && holds_history(&group[touch->entry]))
+        if (!facet_local_stands(local, t) && holds_history(&group[touch->entry]))
             local->ended[local->n_ended++] = touch->entry;
     }
 }
 
-/* Which new contact, if any, goes on where one with this normal has ended. */
-static const struct facet_local_touch *heir_of(const struct facet_local *local,
-                                               const struct facet_contact *group,
-                                               struct vec3 normal)
+/* ---- Depth and normal of a contact that stands for several
+ * ---------------------------------------- */
+
+static int deepest_of(const struct facet_local *local, int standing)
 {
-    const struct facet_local_touch *heir = NULL;
-    double nearest = SAME_NORMAL;
+    int deepest = standing;
     for (int t = 0; t < local->n_touches; t++) {
         const struct facet_local_touch *touch = &local->touches[t];
-        const double turn = vec3_dot(normal, touch->at.normal);
-        if (touch->stands && turn > nearest && !holds_history(&group[touch->entry])) {
+        if (touch->stands_in == standing && touch->one_with &&
+            touch->at.distance < local->touches[deepest].at.distance)
+            deepest = t;
+    }
+    return deepest;
+}
+
+/* How much the normal of `other` counts beside that of the deepest (2.2). */
+static double weight_of(const struct contact_geometry *other,
+                        const struct contact_geometry *deepest, double radius)
+{
+    const double gap = other->distance - deepest->distance;
+    const double rise = (1.0 - vec3_dot(deepest->normal, other->normal)) * other->distance;
+    const double depth = BLEND * (radius - deepest->distance);
+    const double width = depth < rise ? depth : rise;
+    return gap < width ? 1.0 - gap / width : 0.0;
+}
+
+/* Does an earlier touch of the same contact, or the deepest, lie at the same place as t? */
+static bool is_counted(const struct facet_local *local, int deepest, int t)
+{
+    const struct facet_local_touch *touch = &local->touches[t];
+    for (int s = 0; s < local->n_touches; s++) {
+        const struct facet_local_touch *other = &local->touches[s];
+        if ((s < t || s == deepest) && other->stands_in == touch->stands_in &&
+            other->one_with && 1.0 - vec3_dot(other->at.normal, touch->at.normal) < SAME_PLACE)
+            return true;
+    }
+    return false;
+}
+
+/* Where the contact of `standing` is, with all that it stands for. */
+static struct contact_geometry blended(const struct facet_local *local, int standing,
+                                       double radius)
+{
+    const int deepest = deepest_of(local, standing);
+    struct contact_geometry at = local->touches[deepest].at;
+    struct vec3 sum = at.normal;
+    bool turned = false;
+    for (int t = 0; t < local->n_touches; t++) {
+        const struct facet_local_touch *touch = &local->touches[t];
+        if (t == deepest || touch->stands_in != standing || !touch->one_with)
+            continue;
+        const double weight = weight_of(&touch->at, &local->touches[deepest].at, radius);
+        if (!(weight > 0.0) || is_counted(local, deepest, t))
+            continue;
+        sum = vec3_axpy(sum, weight, touch->at.normal);
+        turned = true;
+    }
+    if (!turned)
+        return at;
+    const struct vec3 centre = vec3_axpy(at.point, at.distance, at.normal);
+    at.normal = vec3_scale(1.0 / vec3_norm(sum), sum);
+    at.point = vec3_axpy(centre, -at.distance, at.normal);
+    return at;
+}
+
+static void blend(struct facet_local *local, double radius)
+{
+    for (int t = 0; t < local->n_touches; t++)
+        if (facet_local_stands(local, t))
+            local->touches[t].acts_at = blended(local, t, radius);
+}
+
+/* ---- History
+ * ---------------------------------------------------------------------------------- */
+
+/* Which new contact, if any, goes on where one ended that acted there with this overlap. */
+static const struct facet_local_touch *heir_of(const struct facet_local *local,
+                                               const struct facet_contact *group,
+                                               const struct contact_geometry *was,
+                                               double overlap, double radius)
+{
+    const struct facet_local_touch *heir = NULL;
+    double nearest = -1.0;
+    for (int t = 0; t < local->n_touches; t++) {
+        const struct facet_local_touch *touch = &local->touches[t];
+        const double turn = vec3_dot(was->normal, touch->at.normal);
+        if (!facet_local_stands(local, t) || !(turn > nearest) ||
+            holds_history(&group[touch->entry]))
+            continue;
+        if (turn > SAME_NORMAL || patches_overlap(was, overlap, &touch->at,
+                                                  radius - touch->at.distance, radius, 1.0)) {
             heir = touch;
             nearest = turn;
         }
@@ -128,16 +239,18 @@ static void move_history(double *from, double *to, struct vec3 normal)
 }
 
 static void hand_over(struct facet_local *local, struct facet_contact *group,
-                      const struct mesh *mesh, struct vec3 centre)
+                      const struct mesh *mesh, struct vec3 centre, double radius)
 {
     int n_left = 0;
     for (int e = 0; e < local->n_ended; e++) {
         struct facet_contact *old = &group[local->ended[e]];
         const struct contact_geometry was =
             contact_geometry_closest(mesh, old->feature, centre);
-        const struct facet_local_touch *heir = heir_of(local, group, was.normal);
+        const double patch = old->history[CONTACT_RADIUS_LANE];
+        const struct facet_local_touch *heir =
+            heir_of(local, group, &was, patch * patch / radius, radius);
         if (heir != NULL)
-            move_history(old->history, group[heir->entry].history, heir->at.normal);
+            move_history(old->history, group[heir->entry].history, heir->acts_at.normal);
         else
             local->ended[n_left++] = local->ended[e];
     }
@@ -149,10 +262,12 @@ void facet_local_search(struct facet_local *local, struct facet_contact *group, 
 {
     reserve(local, n);
     find_touches(local, group, n, mesh, centre, radius);
-    if (local->n_touches > 1)
+    if (local->n_touches > 1) {
         choose_standing(local, group, radius);
-    else if (local->n_touches == 1)
-        local->touches[0].stands = true;
+        blend(local, radius);
+    } else if (local->n_touches == 1) {
+        local->touches[0].stands_in = 0;
+    }
     if (local->n_ended > 0 && local->n_touches > 0)
-        hand_over(local, group, mesh, centre);
+        hand_over(local, group, mesh, centre, radius);
 }

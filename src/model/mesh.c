@@ -21,9 +21,10 @@ static const double SLIVER = 1e-12; /* twice the area over the square of the siz
 
 /* What is being built: room for all facets to become four triangles. */
 struct draft {
-    int n_vertices, n_faces;
+    int n_vertices, n_faces, n_means;
     struct vec3 *vertices;
     struct mesh_face *faces;
+    int (*mean_of)[4]; /* the quads of the last n_means vertices */
 };
 
 struct corner { /* a vertex on its way to being joined */
@@ -132,6 +133,7 @@ static void add_fan(struct draft *draft, const struct mesh_face *quad)
         mean = vec3_axpy(mean, 0.25, draft->vertices[quad->vertices[k]]);
     const int centre = draft->n_vertices++;
     draft->vertices[centre] = mean;
+    memcpy(draft->mean_of[draft->n_means++], quad->vertices, sizeof *draft->mean_of);
     for (int k = 0; k < 4; k++)
         add_face(draft,
                  (struct mesh_face){3,
@@ -159,10 +161,11 @@ static struct mesh_face joined_facet(const int facet[4], const int *joined, int 
 static struct draft draft_faces(int n_vertices, const struct vec3 *vertices, int n_facets,
                                 const int (*facets)[4])
 {
-    struct draft draft = {n_vertices, 0, NULL, NULL};
+    struct draft draft = {.n_vertices = n_vertices};
     draft.vertices =
         array_allocate((size_t)n_vertices + (size_t)n_facets, sizeof *draft.vertices);
     draft.faces = array_allocate(4 * (size_t)n_facets, sizeof *draft.faces);
+    draft.mean_of = array_allocate((size_t)n_facets, sizeof *draft.mean_of);
     for (int v = 0; v < n_vertices; v++)
         draft.vertices[v] = vertices[v];
     int *joined = joined_vertices(n_vertices, vertices);
@@ -179,19 +182,39 @@ static struct draft draft_faces(int n_vertices, const struct vec3 *vertices, int
     return draft;
 }
 
-/* Takes over the vertices that faces use, in their order, and renumbers. */
-static void keep_used_vertices(struct mesh *mesh, const struct draft *draft)
+/* Which of the draft's vertices faces use, themselves or through a mean point: 1, else 0. */
+static int *used_vertices(const struct draft *draft)
 {
-    int *number = array_allocate((size_t)draft->n_vertices, sizeof *number);
+    const int n_given = draft->n_vertices - draft->n_means;
+    int *used = array_allocate((size_t)draft->n_vertices, sizeof *used);
     for (int f = 0; f < draft->n_faces; f++)
         for (int k = 0; k < draft->faces[f].n; k++)
-            number[draft->faces[f].vertices[k]] = 1;
+            used[draft->faces[f].vertices[k]] = 1;
+    for (int m = 0; m < draft->n_means; m++)
+        for (int k = 0; k < 4 && used[n_given + m] != 0; k++)
+            used[draft->mean_of[m][k]] = 1;
+    return used;
+}
+
+/* Takes over the vertices that are used, in their order, and renumbers. */
+static void keep_used_vertices(struct mesh *mesh, const struct draft *draft)
+{
+    const int n_given = draft->n_vertices - draft->n_means;
+    int *number = used_vertices(draft);
     mesh->reference = array_allocate((size_t)draft->n_vertices, sizeof *mesh->reference);
+    mesh->mean_of = array_allocate((size_t)draft->n_means, sizeof *mesh->mean_of);
     for (int v = 0; v < draft->n_vertices; v++) {
         if (number[v] == 0)
             continue;
         mesh->reference[mesh->n_vertices] = draft->vertices[v];
         number[v] = mesh->n_vertices++;
+        if (v < n_given) {
+            mesh->n_corners++;
+            continue;
+        }
+        for (int k = 0; k < 4; k++)
+            mesh->mean_of[number[v] - mesh->n_corners][k] =
+                number[draft->mean_of[v - n_given][k]];
     }
     for (int f = 0; f < draft->n_faces; f++)
         for (int k = 0; k < draft->faces[f].n; k++)
@@ -270,6 +293,7 @@ void mesh_build(struct mesh *mesh, int n_vertices, const struct vec3 *vertices, 
     mesh->n_faces = draft.n_faces;
     mesh->faces = draft.faces;
     free(draft.vertices);
+    free(draft.mean_of);
     find_edges(mesh);
     list_edges_at_vertices(mesh);
     mesh->place = array_allocate((size_t)mesh->n_vertices, sizeof *mesh->place);
@@ -282,6 +306,7 @@ void mesh_build(struct mesh *mesh, int n_vertices, const struct vec3 *vertices, 
 
 void mesh_clear(struct mesh *mesh)
 {
+    free(mesh->mean_of);
     free(mesh->reference);
     free(mesh->place);
     free(mesh->edges);

@@ -33,6 +33,10 @@ struct mesh_edge {
 
 struct mesh {
     int n_vertices, n_edges, n_faces;
+    /* Vertices from n_corners on are mean points of warped quads; mean_of[v - n_corners] are
+     * the four corners of which vertex v is the mean. */
+    int n_corners;
+    int (*mean_of)[4];
     struct vec3 *reference; /* vertices at time 0 [m] */
     struct vec3 *place;     /* vertices now [m] */
     struct mesh_edge *edges;

@@ -170,6 +170,116 @@ struct contact_geometry contact_geometry_closest(const struct mesh *mesh, int fe
     return on_vertex(mesh, edge - mesh->n_edges, centre);
 }
 
+/* ---- Shares of nodes
+ * -------------------------------------------------------------------------- */
+
+/* Parts of three corners whose weighted mean is the point's foot on their plane (2.3). What
+ * rounding leaves in a thin triangle is taken out once more. */
+static void area_parts(struct vec3 a, struct vec3 b, struct vec3 c, struct vec3 point,
+                       double parts[3])
+{
+    const struct vec3 ab = vec3_sub(b, a), ac = vec3_sub(c, a);
+    const struct vec3 area = vec3_cross(ab, ac);
+    const double scale = 1.0 / vec3_dot(area, area);
+    struct vec3 rest = vec3_sub(point, a);
+    parts[1] = parts[2] = 0.0;
+    for (int k = 0; k < 2; k++) {
+        const double p = scale * vec3_dot(vec3_cross(rest, ac), area);
+        const double q = scale * vec3_dot(vec3_cross(ab, rest), area);
+        rest = vec3_axpy(vec3_axpy(rest, -p, ab), -q, ac);
+        parts[1] += p;
+        parts[2] += q;
+    }
+    parts[0] = 1.0 - parts[1] - parts[2];
+}
+
+/* Of a flat quad: of the four triangles about the mean point, that which holds the point. */
+static void quad_parts(const struct mesh *mesh, const int *vertices, struct vec3 point,
+                       double parts[4])
+{
+    struct vec3 mean = {0.0, 0.0, 0.0};
+    for (int k = 0; k < 4; k++)
+        mean = vec3_axpy(mean, 0.25, mesh->place[vertices[k]]);
+    double best[3] = {0.0, 0.0, 0.0}, least_best = 0.0;
+    int held_by = -1;
+    for (int k = 0; k < 4; k++) {
+        double p[3];
+        area_parts(mean, mesh->place[vertices[k]], mesh->place[vertices[(k + 1) % 4]], point,
+                   p);
+        const double least = p[1] < p[2] ? p[1] : p[2];
+        if (held_by >= 0 && !(least > least_best))
+            continue;
+        held_by = k;
+        least_best = least;
+        for (int j = 0; j < 3; j++)
+            best[j] = p[j];
+    }
+    for (int k = 0; k < 4; k++)
+        parts[k] = 0.25 * best[0];
+    parts[held_by] += best[1];
+    parts[(held_by + 1) % 4] += best[2];
+}
+
+static void add_part(struct contact_geometry_shares *shares, int vertex, double part)
+{
+    int k = 0;
+    while (k < shares->n && shares->vertices[k] != vertex)
+        k++;
+    if (k == shares->n) {
+        shares->vertices[k] = vertex;
+        shares->parts[k] = 0.0;
+        shares->n++;
+    }
+    shares->parts[k] += part;
+}
+
+/* Gives a vertex its part; a mean point passes it on to its four corners, a quarter each. */
+static void add_vertex(struct contact_geometry_shares *shares, const struct mesh *mesh,
+                       int vertex, double part)
+{
+    if (vertex < mesh->n_corners) {
+        add_part(shares, vertex, part);
+        return;
+    }
+    for (int k = 0; k < 4; k++)
+        add_part(shares, mesh->mean_of[vertex - mesh->n_corners][k], 0.25 * part);
+}
+
+static void add_face(struct contact_geometry_shares *shares, const struct mesh *mesh, int f,
+                     struct vec3 point)
+{
+    const struct mesh_face *face = &mesh->faces[f];
+    const int *v = face->vertices;
+    double parts[4];
+    if (face->n == 4)
+        quad_parts(mesh, v, point, parts);
+    else
+        area_parts(mesh->place[v[0]], mesh->place[v[1]], mesh->place[v[2]], point, parts);
+    for (int k = 0; k < face->n; k++)
+        add_vertex(shares, mesh, v[k], parts[k]);
+}
+
+struct contact_geometry_shares contact_geometry_shares(const struct mesh *mesh, int feature,
+                                                       struct vec3 point)
+{
+    struct contact_geometry_shares shares = {.n = 0};
+    const int edge = feature - mesh->n_faces;
+    if (feature < mesh->n_faces) {
+        add_face(&shares, mesh, feature, point);
+    } else if (edge < mesh->n_edges) {
+        const struct segment s = edge_segment(mesh, edge, point);
+        const double part = s.foot / s.length_squared;
+        add_vertex(&shares, mesh, mesh->edges[edge].vertices[0], 1.0 - part);
+        add_vertex(&shares, mesh, mesh->edges[edge].vertices[1], part);
+    } else {
+        add_vertex(&shares, mesh, edge - mesh->n_edges, 1.0);
+    }
+    return shares;
+}
+
+/* ---- Reach
+ * ------------------------------------------------------------------------------------ */
+
 static bool face_reaches(const struct mesh *mesh, int f, struct vec3 centre, double reach)
 {
     const double height = face_height(mesh, f, centre);

@@ -228,6 +228,103 @@ TEST(what_is_within_reach_is_never_missed)
     mesh_clear(&mesh);
 }
 
+/* Quads, warped or not, and triangles anywhere in space, of any shape down to an angle of about
+ * a degree. */
+static void build_random_facet(struct mesh *mesh, int n, double warp)
+{
+    const struct vec3 origin = {random_between(-1, 1), random_between(-1, 1),
+                                random_between(-1, 1)};
+    const struct vec3 u = {random_between(-1, 1), random_between(-1, 1), random_between(-1, 1)};
+    const struct vec3 any = {random_between(-1, 1), random_between(-1, 1),
+                             random_between(-1, 1)};
+    const struct vec3 normal = vec3_cross(u, any), v = vec3_cross(normal, u);
+    const double flatness = random_between(0.02, 1.0);
+    struct vec3 vertices[4];
+    for (int k = 0; k < 4; k++) {
+        const double x = (k == 1 || k == 2 ? 1.0 : 0.0) + random_between(-0.2, 0.2);
+        const double y = flatness * ((k >= 2 ? 1.0 : 0.0) + random_between(-0.2, 0.2));
+        vertices[k] = vec3_axpy(vec3_axpy(origin, x, u), y, v);
+        vertices[k] = vec3_axpy(vertices[k], warp * random_between(-0.2, 0.2), normal);
+    }
+    const int quad[1][4] = {{0, 1, 2, 3}}, triangle[1][4] = {{0, 1, 2, -1}};
+    mesh_build(mesh, 4, vertices, 1, n == 3 ? triangle : quad);
+}
+
+/* A point of a feature: any weighted mean of its vertices. */
+static struct vec3 random_point(const struct mesh *mesh, int feature)
+{
+    const int edge = feature - mesh->n_faces, vertex = edge - mesh->n_edges;
+    if (vertex >= 0)
+        return mesh->place[vertex];
+    const int n = edge >= 0 ? 2 : mesh->faces[feature].n;
+    const int *vertices =
+        edge >= 0 ? mesh->edges[edge].vertices : mesh->faces[feature].vertices;
+    struct vec3 sum = {0, 0, 0};
+    double total = 0.0;
+    for (int k = 0; k < n; k++) {
+        const double part = random_number();
+        sum = vec3_axpy(sum, part, mesh->place[vertices[k]]);
+        total += part;
+    }
+    return vec3_scale(1.0 / total, sum);
+}
+
+/* Resultant and moment about the origin to 1e-14 of the force and its greatest lever, whatever
+ * feature holds the point; what a face gives at its border is what the edge gives. */
+TEST(shares_of_nodes_have_the_resultant_and_the_moment)
+{
+    for (int k = 0; k < 6000; k++) {
+        struct mesh mesh;
+        build_random_facet(&mesh, k % 3 == 0 ? 3 : 4, k % 3 == 1 ? 1.0 : 0.0);
+        EXPECT(mesh.n_corners == (k % 3 == 0 ? 3 : 4));
+        for (int feature = 0; feature < mesh_n_features(&mesh); feature++) {
+            const struct vec3 point = random_point(&mesh, feature);
+            const struct vec3 force = {random_between(-1, 1), random_between(-1, 1),
+                                       random_between(-1, 1)};
+            const struct contact_geometry_shares shares =
+                contact_geometry_shares(&mesh, feature, point);
+            struct vec3 resultant = {0, 0, 0}, moment = {0, 0, 0};
+            for (int j = 0; j < shares.n; j++) {
+                const struct vec3 share = vec3_scale(shares.parts[j], force);
+                EXPECT(shares.vertices[j] < mesh.n_corners && shares.parts[j] > -1e-13);
+                resultant = vec3_add(resultant, share);
+                moment = vec3_add(moment, vec3_cross(mesh.place[shares.vertices[j]], share));
+            }
+            EXPECT_NEAR(vec3_norm(vec3_sub(resultant, force)), 0.0, 1e-14);
+            EXPECT_NEAR(vec3_norm(vec3_sub(moment, vec3_cross(point, force))), 0.0, 1e-14);
+        }
+        mesh_clear(&mesh);
+    }
+}
+
+TEST(shares_do_not_jump_from_face_to_edge_to_vertex)
+{
+    struct mesh mesh;
+    build_sheet(&mesh, 3, 0.3, 0.05);
+    for (int e = 0; e < mesh.n_edges; e++) {
+        const int feature = mesh.n_faces + e;
+        const struct vec3 point = random_point(&mesh, feature);
+        const struct contact_geometry_shares of_edge =
+            contact_geometry_shares(&mesh, feature, point);
+        for (int side = 0; side < 2; side++) {
+            const int f = mesh.edges[e].faces[side];
+            if (f < 0)
+                continue;
+            double parts[2] = {0.0, 0.0};
+            const struct contact_geometry_shares of_face =
+                contact_geometry_shares(&mesh, f, point);
+            for (int j = 0; j < of_face.n; j++)
+                for (int i = 0; i < of_edge.n; i++)
+                    if (of_face.vertices[j] == of_edge.vertices[i])
+                        parts[i] = of_face.parts[j];
+            for (int i = 0; i < of_edge.n && i < 2; i++)
+                if (of_edge.n == 2) /* not from a corner to a mean point */
+                    EXPECT_NEAR(parts[i], of_edge.parts[i], 1e-13);
+        }
+    }
+    mesh_clear(&mesh);
+}
+
 int main(int argc, char **argv)
 {
     return check_run(argc, argv);

@@ -77,6 +77,9 @@ TEST(a_warped_quad_becomes_four_triangles_about_its_mean)
     struct mesh mesh;
     mesh_build(&mesh, 4, vertices, 1, facets);
     EXPECT(mesh.n_vertices == 5 && mesh.n_edges == 8 && mesh.n_faces == 4);
+    EXPECT(mesh.n_corners == 4);
+    for (int k = 0; k < 4; k++)
+        EXPECT(mesh.mean_of[0][k] == k);
     EXPECT_NEAR(mesh.place[4].x, 0.5, 1e-15);
     EXPECT_NEAR(mesh.place[4].z, 0.005, 1e-15);
     EXPECT(is_consistent(&mesh));
