@@ -4,11 +4,11 @@
  * First every listed feature says whether it touches, then it is decided which of those stand:
  * the deepest first, and it silences all that are the same contact: those with nearly the same
  * normal, those whose patch overlaps its own, and those that lie in its tangent plane or behind
- * it. A contact that stands for several such acts as deep as the deepest of them, and its normal
- * turns from one to the next while they are about as deep (THEORY.md 2.2), so no force jumps at
- * a concave seam and a sphere may come to rest in it. What a feature remembers that stands no
- * more passes to the one that stands in its stead. Only the history of contacts and the geometry
- * enter, so besides what touches the list may hold anything.
+ * it. A contact that stands for several such acts as deep as the deepest of them, and its
+ * normal turns from one to the next while they are about as deep (THEORY.md 2.2), so no force
+ * jumps at a concave seam and a sphere may come to rest in it. What a feature remembers that
+ * stands no more passes to the one that stands in its stead. Only the history of contacts and
+ * the geometry enter, so besides what touches the list may hold anything.
  *
  * Drawback: a fold of more than 15 degrees holds two contacts until the sphere is so deep in it
  * that patches overlap, and one afterwards: there the force falls by up to a half.
