@@ -65,6 +65,14 @@ cut 8 [2,2,2] 2x2x2 ", a sphere larger than a subdomain"
 cut 8 [8,1,1] 8x1x1 ", subdomains half a radius thin"
 rm -rf cuts
 
+# ------------------------------------------------------------------ seams and folds on cuts
+reference seams seams
+seam() { like seams "$1" "seams, $3 grid$4" seams --set "decomposition.grid=$2" "${@:5}"; }
+seam 2 [2,1,1] 2x1x1 ", an edge on the cut, search every 3 steps" $(every 3)
+seam 4 [2,2,1] 2x2x1 ", a vertex on both cuts, cuts anew every 9 steps" $(both_levels 9 9)
+like seams 1 "seams, all pairs" seams $all_pairs
+rm -rf seams
+
 # ------------------------------------------------------------------ bodies that run into rest
 reference bucket bucket
 like bucket 1 "bucket, search every step" bucket $(every 1)
