@@ -11,15 +11,15 @@
 #include "verify.h"
 
 enum { BOUNCES = 4 };
-static const double RADIUS = 0.01, DENSITY = 2500.0, YOUNG = 1e9, POISSON = 0.25, G = 9.81,
-                    HEIGHT = 0.5;
+static const struct impact_solid stone = {1e9, 0.25, 2500.0};
+static const double RADIUS = 0.01, G = 9.81, HEIGHT = 0.5;
 
 static void bounce(double restitution)
 {
     const double speed = sqrt(2.0 * G * (HEIGHT - RADIUS));
-    const double modulus = impact_modulus(YOUNG, POISSON, YOUNG, POISSON);
-    const struct impact_hertz hertz =
-        impact_hertz(modulus, RADIUS, impact_mass(DENSITY, RADIUS), speed);
+    const struct impact first = {
+        .solid = {&stone, &stone}, .radius = {RADIUS, 0.0}, .velocity = {{0.0, 0.0, -speed}}};
+    const struct impact_hertz hertz = impact_hertz(&first);
     const double dt = hertz.duration / 200.0;
     /* At rest at step 0, so half a step of gravity is behind it. */
     char *sphere =
@@ -34,7 +34,7 @@ static void bounce(double restitution)
                      "    - {between: [stone, stone], friction: 0.3, restitution: %g}\n"
                      "spheres:\n%sbodies:\n  - {name: plane, material: stone, geometry: "
                      "{kind: plane, point: [0, 0, 0], normal: [0, 0, 1], extent: 10}}\n",
-                     -G, DENSITY, YOUNG, POISSON, restitution, sphere);
+                     -G, stone.density, stone.young, stone.poisson, restitution, sphere);
     free(sphere);
     double drop = HEIGHT - RADIUS, slack = 0.0;
     verify_steps(sim, 1);

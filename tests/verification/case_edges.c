@@ -17,8 +17,8 @@
 
 enum { CELLS = 16 };
 
-static const double RADIUS = 0.01, DENSITY = 2500.0, YOUNG = 1e8, POISSON = 0.25, G = 9.81,
-                    STEP = 1e-5, CELL = 0.013;
+static const struct impact_solid stone = {1e8, 0.25, 2500.0}; /* as below */
+static const double RADIUS = 0.01, G = 9.81, STEP = 1e-5, CELL = 0.013;
 
 /* The mesh's geometry: a chessboard of quads and pairs of triangles, the origin at a vertex. */
 static char *mesh(void)
@@ -57,7 +57,7 @@ static const char MATERIALS[] =
 /* Overlap at which the contact carries this force. (1.5) */
 static double overlap_under(double force)
 {
-    const double modulus = impact_modulus(YOUNG, POISSON, YOUNG, POISSON);
+    const double modulus = impact_modulus(&stone, &stone);
     return pow(0.75 * force / (modulus * sqrt(RADIUS)), 2.0 / 3.0);
 }
 
@@ -65,7 +65,7 @@ static double overlap_under(double force)
 static void roll(const char *name, struct vec3 start, struct vec3 along, struct vec3 mesh_moves)
 {
     const double angle = 5.0 * M_PI / 180.0, speed = 0.3;
-    const double weight = impact_mass(DENSITY, RADIUS) * G * cos(angle);
+    const double weight = impact_mass(&stone, RADIUS) * G * cos(angle);
     const struct vec3 place = {start.x, start.y, RADIUS - overlap_under(weight)};
     const struct vec3 velocity = vec3_axpy(mesh_moves, speed, along);
     const struct vec3 spin = vec3_scale(speed / RADIUS, (struct vec3){-along.y, along.x, 0.0});

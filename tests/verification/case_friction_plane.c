@@ -14,28 +14,29 @@
 #include "run/simulation.h"
 #include "verify.h"
 
-static const double RADIUS = 0.01, DENSITY = 2500.0, YOUNG = 1e9, POISSON = 0.25, G = 9.81,
-                    STEP = 5e-6, DEGREE = M_PI / 180.0;
+static const struct impact_solid stone = {1e9, 0.25, 2500.0};
+static const double RADIUS = 0.01, G = 9.81, STEP = 5e-6, DEGREE = M_PI / 180.0;
 
 /* A sphere that rests on the plane, moving at `speed` along x. */
 static struct simulation *rest(double friction, double angle, double speed)
 {
-    const double weight = impact_mass(DENSITY, RADIUS) * G * cos(angle);
-    const double modulus = impact_modulus(YOUNG, POISSON, YOUNG, POISSON);
+    const double weight = impact_mass(&stone, RADIUS) * G * cos(angle);
+    const double modulus = impact_modulus(&stone, &stone);
     const double overlap = pow(0.75 * weight / (modulus * sqrt(RADIUS)), 2.0 / 3.0); /* (1.5) */
     char *sphere =
         verify_sphere("ball", "stone", RADIUS, (struct vec3){0.0, 0.0, RADIUS - overlap},
                       (struct vec3){speed, 0.0, 0.0}, (struct vec3){0.0, 0.0, 0.0});
-    struct simulation *sim = verify_scene(
-        STEP,
-        "gravity: [%.17g, 0, %.17g]\ndomain: {leavers: ignore}\n"
-        "output: {series: {every: 1.0e+9}}\n"
-        "materials:\n  stone: {density: %g, young: %g, poisson: %g}\n"
-        "contact:\n  pairs:\n"
-        "    - {between: [stone, stone], friction: %g, restitution: 0.5}\n"
-        "spheres:\n%sbodies:\n  - {name: plane, material: stone, geometry: "
-        "{kind: plane, point: [0, 0, 0], normal: [0, 0, 1], extent: 100}}\n",
-        G * sin(angle), -G * cos(angle), DENSITY, YOUNG, POISSON, friction, sphere);
+    struct simulation *sim =
+        verify_scene(STEP,
+                     "gravity: [%.17g, 0, %.17g]\ndomain: {leavers: ignore}\n"
+                     "output: {series: {every: 1.0e+9}}\n"
+                     "materials:\n  stone: {density: %g, young: %g, poisson: %g}\n"
+                     "contact:\n  pairs:\n"
+                     "    - {between: [stone, stone], friction: %g, restitution: 0.5}\n"
+                     "spheres:\n%sbodies:\n  - {name: plane, material: stone, geometry: "
+                     "{kind: plane, point: [0, 0, 0], normal: [0, 0, 1], extent: 100}}\n",
+                     G * sin(angle), -G * cos(angle), stone.density, stone.young, stone.poisson,
+                     friction, sphere);
     free(sphere);
     return sim;
 }

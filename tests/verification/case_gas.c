@@ -14,12 +14,6 @@ enum { N = 200, STEPS = 100000, BLOCKS = 20, SAMPLES = 1000 };
 
 static const double STEP = 4e-6, SPEED = 0.5, RADIUS = 0.005, SIDE = 0.08;
 
-static double next_random(uint64_t *state)
-{
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return 2.0 * (double)(*state >> 11) * 0x1p-53 - 1.0;
-}
-
 static struct simulation *gas(double dt)
 {
     struct simulation *sim = verify_scene(
@@ -36,7 +30,7 @@ static struct simulation *gas(double dt)
     for (int id = 0; id < N; id++) {
         double *v = sphere_velocity(&sim->spheres, verify_index(sim, id));
         for (int k = 0; k < 3; k++)
-            v[k] = SPEED * next_random(&random);
+            v[k] = SPEED * verify_random(&random);
     }
     return sim;
 }

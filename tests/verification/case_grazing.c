@@ -14,20 +14,11 @@
 
 enum { PHASES = 3, FIRST_ANGLE = 1, ANGLES_APART = 2 };
 
-static const double RADIUS = 0.01, YOUNG = 7e10, POISSON = 0.25, DENSITY = 2500.0, SPEED = 1.0,
-                    DEGREE = M_PI / 180.0;
+static const struct impact_solid stone = {7e10, 0.25, 2500.0};
+static const double RADIUS = 0.01, SPEED = 1.0, DEGREE = M_PI / 180.0;
 
 static const double frictions[] = {0.1, 0.3, 0.5, 1.0, 3.0, 10.0};
 enum { N_FRICTIONS = sizeof frictions / sizeof frictions[0] };
-
-static void describe(char *rest, size_t size, double friction, double restitution)
-{
-    snprintf(rest, size,
-             "materials:\n  stone: {density: %g, young: %g, poisson: %g}\n"
-             "contact:\n  pairs:\n"
-             "    - {between: [stone, stone], friction: %g, restitution: %g}\n",
-             DENSITY, YOUNG, POISSON, friction, restitution);
-}
 
 /* Energy of motion along the plane and of turning [J]. */
 static double along(const struct impact_result *result, struct vec3 v, struct vec3 w)
@@ -40,23 +31,19 @@ static double along(const struct impact_result *result, struct vec3 v, struct ve
  * spins. */
 static double plane_gain(double friction, double restitution, int steps)
 {
-    char rest[512];
-    describe(rest, sizeof rest, friction, restitution);
-    const double modulus = impact_modulus(YOUNG, POISSON, YOUNG, POISSON);
     double most = -1.0;
     for (int degrees = FIRST_ANGLE; degrees < 90; degrees += ANGLES_APART) {
         const double v_n = SPEED * cos(degrees * DEGREE), v_t = SPEED * sin(degrees * DEGREE);
-        const struct impact_hertz hertz =
-            impact_hertz(modulus, RADIUS, impact_mass(DENSITY, RADIUS), v_n);
         for (int k = 0; k < 3 * PHASES; k++) {
-            const struct impact impact = {
-                .rest = rest,
-                .material = {"stone", "stone"},
-                .radius = {RADIUS, 0.0},
-                .velocity = {{v_t, 0.0, -v_n}},
-                .spin = {{20.0 * (k / PHASES - 1), 30.0 * (k / PHASES - 1), 0.0}},
-                .dt = hertz.duration / steps,
-                .phase = (k % PHASES + 0.5) / PHASES};
+            const int turns = k / PHASES - 1; /* against, none, along */
+            struct impact impact = {.solid = {&stone, &stone},
+                                    .friction = friction,
+                                    .restitution = restitution,
+                                    .radius = {RADIUS, 0.0},
+                                    .velocity = {{v_t, 0.0, -v_n}},
+                                    .spin = {{20.0 * turns, 30.0 * turns, 0.0}},
+                                    .phase = (k % PHASES + 0.5) / PHASES};
+            impact.dt = impact_hertz(&impact).duration / steps;
             const struct impact_result result = impact_run(&impact);
             const double gain = along(&result, result.velocity[0], result.spin[0]) /
                                     along(&result, impact.velocity[0], impact.spin[0]) -
@@ -67,41 +54,34 @@ static double plane_gain(double friction, double restitution, int steps)
     return most;
 }
 
-/* Two spheres, oblique by `degrees`: energy kept, of all that can be lost or gained. */
-static double kept(const char *rest, int degrees, double duration, int steps, double phase)
+/* Two spheres, oblique by `degrees`: share of the energy gained. */
+static double gain_of(double friction, int degrees, int steps, double phase)
 {
     const double v_n = SPEED * cos(degrees * DEGREE), v_t = SPEED * sin(degrees * DEGREE);
-    const struct impact impact = {
-        .rest = rest,
-        .material = {"stone", "stone"},
+    struct impact impact = {
+        .solid = {&stone, &stone},
+        .friction = friction,
+        .restitution = 1.0,
         .radius = {RADIUS, RADIUS},
         .velocity = {{0.5 * v_t, 0.0, -0.5 * v_n}, {-0.5 * v_t, 0.0, 0.5 * v_n}},
-        .dt = duration / steps,
         .phase = phase};
+    impact.dt = impact_hertz(&impact).duration / steps;
     const struct impact_result result = impact_run(&impact);
-    return result.kinetic[1] / result.kinetic[0];
+    return result.kinetic[1] / result.kinetic[0] - 1.0;
 }
 
-/* The largest gain of two spheres beyond that of a normal impact of the same v_n and phase. */
+/* The largest gain of two spheres beyond that of a normal impact of the same v_n and phase;
+ * Hertz's impact scales with the speed, so that is a share of one head on. */
 static double pair_gain(double friction, int steps)
 {
-    char rest[512];
-    describe(rest, sizeof rest, friction, 1.0);
-    const double modulus = impact_modulus(YOUNG, POISSON, YOUNG, POISSON);
     double most = -1.0;
-    for (int degrees = FIRST_ANGLE; degrees < 90; degrees += ANGLES_APART) {
-        const struct impact_hertz hertz =
-            impact_hertz(modulus, 0.5 * RADIUS, 0.5 * impact_mass(DENSITY, RADIUS),
-                         SPEED * cos(degrees * DEGREE));
-        for (int k = 0; k < PHASES; k++) {
-            const double phase = (k + 0.5) / PHASES;
-            const double gain = kept(rest, degrees, hertz.duration, steps, phase) - 1.0;
-            /* The same across alone; Hertz's impact scales with the speed. */
-            const struct impact_hertz head_on =
-                impact_hertz(modulus, 0.5 * RADIUS, 0.5 * impact_mass(DENSITY, RADIUS), SPEED);
-            const double normal = kept(rest, 0, head_on.duration, steps, phase) - 1.0;
+    for (int k = 0; k < PHASES; k++) {
+        const double phase = (k + 0.5) / PHASES;
+        const double normal = gain_of(friction, 0, steps, phase);
+        for (int degrees = FIRST_ANGLE; degrees < 90; degrees += ANGLES_APART) {
             const double share = cos(degrees * DEGREE) * cos(degrees * DEGREE);
-            most = gain - share * normal > most ? gain - share * normal : most;
+            const double gain = gain_of(friction, degrees, steps, phase) - share * normal;
+            most = gain > most ? gain : most;
         }
     }
     return most;

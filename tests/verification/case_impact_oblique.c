@@ -11,35 +11,30 @@
 #include "impact.h"
 #include "verify.h"
 
-static const double RIGID = 1e15, DEGREE = M_PI / 180.0;
+static const double DEGREE = M_PI / 180.0;
 
-struct solid {
-    double radius, young, poisson, density, friction, restitution;
+/* A sphere and what happens where it touches. */
+struct sphere {
+    struct impact_solid solid;
+    double radius, friction, restitution;
 };
 
-/* The impact at these speeds, at 1000 steps a contact. */
-static struct impact_result strike(const struct solid *solid, double v_n, double v_t,
+static const struct sphere oxide = {{380e9, 0.23, 4000.0}, 2.5e-3, 0.092, 0.98},
+                           steel = {{208e9, 0.3, 7850.0}, 10e-6, 0.3, 1.0},
+                           alloy = {{70e9, 0.33, 2700.0}, 0.1, 0.4, 0.5};
+
+/* The impact on a rigid plane at these speeds, at 1000 steps a contact. */
+static struct impact_result strike(const struct sphere *sphere, double v_n, double v_t,
                                    double spin)
 {
-    char rest[512];
-    snprintf(rest, sizeof rest,
-             "materials:\n  ball: {density: %g, young: %g, poisson: %g}\n"
-             "  wall: {density: 7850, young: %g, poisson: 0.3}\n"
-             "contact:\n  pairs:\n"
-             "    - {between: [ball, wall], friction: %g, restitution: %g}\n"
-             "    - {between: [ball, ball], friction: 0, restitution: 1}\n",
-             solid->density, solid->young, solid->poisson, RIGID, solid->friction,
-             solid->restitution);
-    const struct impact_hertz hertz =
-        impact_hertz(impact_modulus(solid->young, solid->poisson, RIGID, 0.3), solid->radius,
-                     impact_mass(solid->density, solid->radius), v_n);
-    const struct impact impact = {.rest = rest,
-                                  .material = {"ball", "wall"},
-                                  .radius = {solid->radius, 0.0},
-                                  .velocity = {{v_t, 0.0, -v_n}},
-                                  .spin = {{0.0, spin, 0.0}},
-                                  .dt = hertz.duration / 1000.0,
-                                  .phase = 0.5};
+    struct impact impact = {.solid = {&sphere->solid, &impact_rigid},
+                            .friction = sphere->friction,
+                            .restitution = sphere->restitution,
+                            .radius = {sphere->radius, 0.0},
+                            .velocity = {{v_t, 0.0, -v_n}},
+                            .spin = {{0.0, spin, 0.0}},
+                            .phase = 0.5};
+    impact.dt = impact_hertz(&impact).duration / 1000.0;
     return impact_run(&impact);
 }
 
@@ -48,7 +43,6 @@ static const char LEAPFROG[] = "(pi/1000)^2, 1e-5: leapfrog at 1000 steps a cont
 /* Constant speed, rising angle. */
 static void case_4(void)
 {
-    static const struct solid oxide = {2.5e-3, 380e9, 0.23, 4000.0, 0.092, 0.98};
     /* angle from the normal, tangential restitution, angular velocity, rebound angle */
     static const double table[][4] = {
         {20, 0.616, 511, -7.54}, {25, 0.634, 599, -7.54}, {30, 0.684, 617, -3.55},
@@ -96,7 +90,6 @@ static void case_4(void)
 /* Constant normal speed, rising tangential speed. */
 static void case_5(void)
 {
-    static const struct solid steel = {10e-6, 208e9, 0.3, 7850.0, 0.3, 1.0};
     static const double ratios[] = {7.5, 10.0, 14.0, 20.0};
     const double v_n = 5.0, mu = steel.friction;
     verify_source("momentum, sliding throughout; set-up: Chung and Ooi 2011, case 5");
@@ -112,7 +105,6 @@ static void case_5(void)
 /* Spin into a wall. */
 static void case_6(void)
 {
-    static const struct solid alloy = {0.1, 70e9, 0.33, 2700.0, 0.4, 0.5};
     static const double x[] = {0.95, 0.75, 0.5, 0.25};
     const double v_n = 0.2;
     verify_source("momentum, sliding throughout; set-up: Chung and Ooi 2011, case 6");
@@ -131,25 +123,18 @@ static void case_6(void)
 /* Two equal spheres, slowly, so that their normal hardly turns meanwhile. */
 static void spheres(double degrees)
 {
-    static const struct solid oxide = {2.5e-3, 380e9, 0.23, 4000.0, 0.092, 0.98};
     const double speed = 0.1, mu = oxide.friction, e = oxide.restitution;
     const double v_n = speed * cos(degrees * DEGREE), v_t = speed * sin(degrees * DEGREE);
-    char rest[512], name[2][96];
-    snprintf(rest, sizeof rest,
-             "materials:\n  ball: {density: %g, young: %g, poisson: %g}\n"
-             "contact:\n  pairs:\n"
-             "    - {between: [ball, ball], friction: %g, restitution: %g}\n",
-             oxide.density, oxide.young, oxide.poisson, mu, e);
-    const struct impact_hertz hertz =
-        impact_hertz(impact_modulus(oxide.young, oxide.poisson, oxide.young, oxide.poisson),
-                     0.5 * oxide.radius, 0.5 * impact_mass(oxide.density, oxide.radius), v_n);
-    const struct impact impact = {
-        .rest = rest,
-        .material = {"ball", "ball"},
+    char name[2][96];
+    struct impact impact = {
+        .solid = {&oxide.solid, &oxide.solid},
+        .friction = mu,
+        .restitution = e,
         .radius = {oxide.radius, oxide.radius},
         .velocity = {{0.5 * v_t, 0.0, -0.5 * v_n}, {-0.5 * v_t, 0.0, 0.5 * v_n}},
-        .dt = hertz.duration / 1000.0,
         .phase = 0.5};
+    const struct impact_hertz hertz = impact_hertz(&impact);
+    impact.dt = hertz.duration / 1000.0;
     const struct impact_result result = impact_run(&impact);
     /* How far the line of centres turns, times what it mixes into each. */
     const double turned = 0.5 * v_t * hertz.duration / oxide.radius;

@@ -15,37 +15,22 @@
 
 enum { PHASES = 16, STEPS = 500 };
 
-struct solid {
-    const char *name;
-    double young, poisson, density;
-};
-
-static const struct solid oxide = {"aluminium_oxide", 380e9, 0.23, 4000.0},
-                          iron = {"cast_iron", 100e9, 0.25, 7000.0};
-static const double RADIUS = 2.5e-3, SPEED = 3.9, RIGID = 1e15;
+static const struct impact_solid oxide = {380e9, 0.23, 4000.0}, iron = {100e9, 0.25, 7000.0};
+static const double RADIUS = 2.5e-3, SPEED = 3.9;
 
 struct spread {
     double mean, least, most, deepest;
 };
 
 /* Impacts on a rigid plane at PHASES phases, `steps` to an elastic one. */
-static struct spread impacts(const struct solid *solid, double restitution, int steps)
+static struct spread impacts(const struct impact_solid *solid, double restitution, int steps)
 {
-    char rest[512];
-    snprintf(rest, sizeof rest,
-             "materials:\n  ball: {density: %g, young: %g, poisson: %g}\n"
-             "  wall: {density: 7850, young: %g, poisson: 0.3}\n"
-             "contact:\n  pairs:\n    - {between: [ball, wall], friction: 0, restitution: %g}\n"
-             "    - {between: [ball, ball], friction: 0, restitution: 1}\n",
-             solid->density, solid->young, solid->poisson, RIGID, restitution);
-    const struct impact_hertz hertz =
-        impact_hertz(impact_modulus(solid->young, solid->poisson, RIGID, 0.3), RADIUS,
-                     impact_mass(solid->density, RADIUS), SPEED);
-    struct impact impact = {.rest = rest,
-                            .material = {"ball", "wall"},
+    struct impact impact = {.solid = {solid, &impact_rigid},
+                            .restitution = restitution,
                             .radius = {RADIUS, 0.0},
-                            .velocity = {{0.0, 0.0, -SPEED}},
-                            .dt = hertz.duration / steps};
+                            .velocity = {{0.0, 0.0, -SPEED}}};
+    const struct impact_hertz hertz = impact_hertz(&impact);
+    impact.dt = hertz.duration / steps;
     struct spread spread = {0.0, 1e300, -1e300, 0.0};
     for (int p = 0; p < PHASES; p++) {
         impact.phase = (p + 0.5) / PHASES;
@@ -59,7 +44,7 @@ static struct spread impacts(const struct solid *solid, double restitution, int 
     return spread;
 }
 
-static void compare(const struct solid *solid, const char *name)
+static void compare(const struct impact_solid *solid, const char *name)
 {
     static const double asked[] = {0.2, 0.4, 0.6, 0.8, 1.0};
     for (int k = 0; k < 5; k++) {
@@ -74,26 +59,12 @@ static void compare(const struct solid *solid, const char *name)
 /* Two spheres of unlike materials and sizes, at PHASES phases. */
 static void compare_pair(double radius_0, double radius_1, double restitution)
 {
-    char rest[512], quantity[128];
-    snprintf(
-        rest, sizeof rest,
-        "materials:\n  oxide: {density: %g, young: %g, poisson: %g}\n"
-        "  iron: {density: %g, young: %g, poisson: %g}\n"
-        "contact:\n  pairs:\n    - {between: [oxide, iron], friction: 0, restitution: %g}\n"
-        "    - {between: [oxide, oxide], friction: 0, restitution: 1}\n"
-        "    - {between: [iron, iron], friction: 0, restitution: 1}\n",
-        oxide.density, oxide.young, oxide.poisson, iron.density, iron.young, iron.poisson,
-        restitution);
-    const double mass = 1.0 / (1.0 / impact_mass(oxide.density, radius_0) +
-                               1.0 / impact_mass(iron.density, radius_1));
-    const struct impact_hertz hertz =
-        impact_hertz(impact_modulus(oxide.young, oxide.poisson, iron.young, iron.poisson),
-                     1.0 / (1.0 / radius_0 + 1.0 / radius_1), mass, SPEED);
-    struct impact impact = {.rest = rest,
-                            .material = {"oxide", "iron"},
+    char quantity[128];
+    struct impact impact = {.solid = {&oxide, &iron},
+                            .restitution = restitution,
                             .radius = {radius_0, radius_1},
-                            .velocity = {{0.0, 0.0, -0.75 * SPEED}, {0.0, 0.0, 0.25 * SPEED}},
-                            .dt = hertz.duration / STEPS};
+                            .velocity = {{0.0, 0.0, -0.75 * SPEED}, {0.0, 0.0, 0.25 * SPEED}}};
+    impact.dt = impact_hertz(&impact).duration / STEPS;
     double out = 0.0;
     for (int p = 0; p < PHASES; p++) {
         impact.phase = (p + 0.5) / PHASES;

@@ -14,28 +14,22 @@
 
 enum { N = 20, STEPS = 20000 };
 
-/* A number between -1 and 1, the next of a fixed sequence. */
-static double next_random(uint64_t *state)
-{
-    *state = *state * 6364136223846793005u + 1442695040888963407u;
-    return 2.0 * (double)(*state >> 11) * 0x1p-53 - 1.0;
-}
-
 static struct simulation *cluster(double friction, double restitution)
 {
     uint64_t random = 7;
     char *list = array_string("");
     for (int i = 0; i < N; i++) {
-        const struct vec3 place = {0.03 * (i % 3 - 1), 0.03 * (i / 3 % 3 - 1),
-                                   0.03 * (i / 9 - 1)};
-        const struct vec3 stray = {next_random(&random), next_random(&random),
-                                   next_random(&random)};
-        const struct vec3 spin = {100.0 * next_random(&random), 100.0 * next_random(&random),
-                                  100.0 * next_random(&random)};
+        const int layer = i / 9, row = i / 3 % 3, column = i % 3;
+        const struct vec3 place = {0.03 * (column - 1), 0.03 * (row - 1), 0.03 * (layer - 1)};
+        const struct vec3 stray = {verify_random(&random), verify_random(&random),
+                                   verify_random(&random)};
+        const struct vec3 spin = {100.0 * verify_random(&random),
+                                  100.0 * verify_random(&random),
+                                  100.0 * verify_random(&random)};
         char name[16];
         snprintf(name, sizeof name, "ball_%d", i);
         char *one = verify_sphere(name, i % 3 == 0 ? "heavy" : "light",
-                                  0.009 + 0.005 * next_random(&random), place,
+                                  0.009 + 0.005 * verify_random(&random), place,
                                   vec3_axpy(stray, -50.0, place), spin);
         char *longer = array_format("%s%s", list, one);
         free(one);

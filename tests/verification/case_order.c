@@ -16,8 +16,8 @@
 
 enum { PHASES = 32, LEVELS = 3, COARSEST = 100 };
 
-static const double RADIUS = 0.01, YOUNG = 7e10, POISSON = 0.25, DENSITY = 2500.0, SPEED = 1.0,
-                    DEGREE = M_PI / 180.0;
+static const struct impact_solid stone = {7e10, 0.25, 2500.0};
+static const double RADIUS = 0.01, SPEED = 1.0, DEGREE = M_PI / 180.0;
 
 /* An impact on a plane at COARSEST steps a contact, twice and four times as many: over the
  * phase, */
@@ -29,26 +29,19 @@ struct levels {
 
 static struct levels run_levels(double friction, double restitution, double degrees)
 {
-    char rest[512];
-    snprintf(rest, sizeof rest,
-             "materials:\n  stone: {density: %g, young: %g, poisson: %g}\n"
-             "contact:\n  pairs:\n"
-             "    - {between: [stone, stone], friction: %g, restitution: %g}\n",
-             DENSITY, YOUNG, POISSON, friction, restitution);
     const double v_n = SPEED * cos(degrees * DEGREE), v_t = SPEED * sin(degrees * DEGREE);
-    const struct impact_hertz hertz =
-        impact_hertz(impact_modulus(YOUNG, POISSON, YOUNG, POISSON), RADIUS,
-                     impact_mass(DENSITY, RADIUS), v_n);
+    struct impact impact = {.solid = {&stone, &stone},
+                            .friction = friction,
+                            .restitution = restitution,
+                            .radius = {RADIUS, 0.0},
+                            .velocity = {{v_t, 0.0, -v_n}}};
+    const double duration = impact_hertz(&impact).duration;
     struct levels levels = {{0.0}, {0.0}, {0.0}, {0.0}};
     for (int l = 0; l < LEVELS; l++) {
         double squares = 0.0;
+        impact.dt = duration / (COARSEST << l);
         for (int p = 0; p < PHASES; p++) {
-            const struct impact impact = {.rest = rest,
-                                          .material = {"stone", "stone"},
-                                          .radius = {RADIUS, 0.0},
-                                          .velocity = {{v_t, 0.0, -v_n}},
-                                          .dt = hertz.duration / (COARSEST << l),
-                                          .phase = (p + 0.5) / PHASES};
+            impact.phase = (p + 0.5) / PHASES;
             const struct impact_result result = impact_run(&impact);
             const double error = result.velocity[0].z / v_n - restitution;
             levels.mean[l] += error / PHASES;

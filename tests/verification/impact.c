@@ -13,28 +13,58 @@
 
 enum { STEPS_BEFORE = 3, STEPS_MOST = 10000000 };
 
+const struct impact_solid impact_rigid = {1e15, 0.3, 7850.0};
+
+/* Materials and all pairs of them: as far as the job knows, spheres of one kind may meet. */
+static char *describe(const struct impact *impact)
+{
+    static const char *const names[2] = {"first", "second"};
+    const int n = impact->solid[0] == impact->solid[1] ? 1 : 2;
+    char *text = array_string("materials:\n"), *longer;
+    for (int m = 0; m < n; m++) {
+        const struct impact_solid *solid = impact->solid[m];
+        longer = array_format("%s  %s: {density: %.17g, young: %.17g, poisson: %.17g}\n", text,
+                              names[m], solid->density, solid->young, solid->poisson);
+        free(text);
+        text = longer;
+    }
+    longer = array_format(
+        "%scontact:\n  pairs:\n"
+        "    - {between: [first, %s], friction: %.17g, restitution: %.17g%s}\n%s",
+        text, names[n - 1], impact->friction, impact->restitution,
+        impact->more != NULL ? impact->more : "",
+        n == 1 ? ""
+               : "    - {between: [first, first], friction: 0, restitution: 1}\n"
+                 "    - {between: [second, second], friction: 0, restitution: 1}\n");
+    free(text);
+    return longer;
+}
+
 static struct simulation *build(const struct impact *impact, double *touch)
 {
     const bool pair = impact->radius[1] > 0.0;
+    const char *other = impact->solid[0] == impact->solid[1] ? "first" : "second";
     const double approach = impact->velocity[1].z - impact->velocity[0].z;
     CHECK(approach > 0.0, "surfaces do not approach");
     *touch = (STEPS_BEFORE + impact->phase) * impact->dt;
     const struct vec3 meet = {0.0, 0.0, impact->radius[0] + impact->radius[1]};
-    char *first = verify_sphere("first", impact->material[0], impact->radius[0],
+    char *first = verify_sphere("upper", "first", impact->radius[0],
                                 vec3_axpy(meet, -*touch, impact->velocity[0]),
                                 impact->velocity[0], impact->spin[0]);
     const struct vec3 back = vec3_scale(-*touch, impact->velocity[1]);
-    char *second = pair ? verify_sphere("second", impact->material[1], impact->radius[1], back,
+    char *second = pair ? verify_sphere("lower", other, impact->radius[1], back,
                                         impact->velocity[1], impact->spin[1])
                         : array_format("bodies:\n  - {name: plane, material: %s, geometry: "
                                        "{kind: plane, point: [0, 0, 0], normal: [0, 0, 1], "
                                        "extent: %.17g}}\n",
-                                       impact->material[1], 1e3 * impact->radius[0]);
+                                       other, 1e3 * impact->radius[0]);
+    char *rest = describe(impact);
     struct simulation *sim =
         verify_scene(impact->dt,
                      "gravity: [0, 0, 0]\ndomain: {leavers: ignore}\nwatch: {overlap: 1}\n"
                      "output: {series: {every: 1.0e+9}}\n%sspheres:\n%s%s",
-                     impact->rest, first, second);
+                     rest, first, second);
+    free(rest);
     free(first);
     free(second);
     return sim;
@@ -137,22 +167,29 @@ struct impact_result impact_run(const struct impact *impact)
     return result;
 }
 
-double impact_modulus(double young_1, double poisson_1, double young_2, double poisson_2)
+double impact_modulus(const struct impact_solid *a, const struct impact_solid *b)
 {
-    return 1.0 /
-           ((1.0 - poisson_1 * poisson_1) / young_1 + (1.0 - poisson_2 * poisson_2) / young_2);
+    return 1.0 / ((1.0 - a->poisson * a->poisson) / a->young +
+                  (1.0 - b->poisson * b->poisson) / b->young);
 }
 
-struct impact_hertz impact_hertz(double modulus, double radius, double mass, double speed)
+double impact_mass(const struct impact_solid *solid, double radius)
 {
+    return solid->density * 4.0 / 3.0 * M_PI * radius * radius * radius;
+}
+
+struct impact_hertz impact_hertz(const struct impact *impact)
+{
+    const double modulus = impact_modulus(impact->solid[0], impact->solid[1]);
+    const double speed = impact->velocity[1].z - impact->velocity[0].z;
+    double radius = impact->radius[0], mass = impact_mass(impact->solid[0], radius);
+    if (impact->radius[1] > 0.0) {
+        radius = 1.0 / (1.0 / radius + 1.0 / impact->radius[1]);
+        mass = 1.0 / (1.0 / mass + 1.0 / impact_mass(impact->solid[1], impact->radius[1]));
+    }
     struct impact_hertz hertz;
     hertz.overlap = pow(15.0 * mass * speed * speed / (16.0 * modulus * sqrt(radius)), 0.4);
     hertz.force = 4.0 / 3.0 * modulus * sqrt(radius) * pow(hertz.overlap, 1.5);
     hertz.duration = 0.8 * sqrt(M_PI) * tgamma(0.4) / tgamma(0.9) * hertz.overlap / speed;
     return hertz;
-}
-
-double impact_mass(double density, double radius)
-{
-    return density * 4.0 / 3.0 * M_PI * radius * radius * radius;
 }

@@ -10,9 +10,17 @@
 
 #include "base/vec3.h"
 
+struct impact_solid {
+    double young, poisson, density; /* [Pa], [-], [kg/m3] */
+};
+
+/* As stiff as a job may say. */
+extern const struct impact_solid impact_rigid;
+
 struct impact {
-    const char *rest; /* YAML: materials and contact */
-    const char *material[2];
+    const struct impact_solid *solid[2]; /* of sphere 0, and of sphere 1 or the plane */
+    double friction, restitution;
+    const char *more; /* further keys of the pair, each after a comma; NULL: none */
     double radius[2]; /* [m]; the second 0: a plane */
     struct vec3 velocity[2], spin[2];
     double dt;    /* [s] */
@@ -32,14 +40,16 @@ struct impact_result {
 
 struct impact_result impact_run(const struct impact *impact);
 
-/* Effective modulus of a pair [Pa] (THEORY.md (1.1)). */
-double impact_modulus(double young_1, double poisson_1, double young_2, double poisson_2);
 /* Elastic Hertz impact (1.25): largest overlap [m], its force [N], duration [s]. */
 struct impact_hertz {
     double overlap, force, duration;
 };
-struct impact_hertz impact_hertz(double modulus, double radius, double mass, double speed);
+/* That of an impact, were it elastic; dt and phase need not be known yet. */
+struct impact_hertz impact_hertz(const struct impact *impact);
+
+/* Effective modulus of two solids [Pa] (1.1). */
+double impact_modulus(const struct impact_solid *a, const struct impact_solid *b);
 /* Mass of a sphere [kg]. */
-double impact_mass(double density, double radius);
+double impact_mass(const struct impact_solid *solid, double radius);
 
 #endif

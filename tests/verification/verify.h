@@ -62,4 +62,11 @@ int verify_index(const struct simulation *sim, int64_t id);
 /* A column of the last sample that was taken (output.series.every says how often). */
 double verify_series(const struct simulation *sim, const char *column);
 
+/* A number between -1 and 1, the next of a fixed sequence. */
+static inline double verify_random(uint64_t *state)
+{
+    *state = *state * 6364136223846793005u + 1442695040888963407u;
+    return 2.0 * (double)(*state >> 11) * 0x1p-53 - 1.0;
+}
+
 #endif
