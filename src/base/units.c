@@ -72,6 +72,7 @@ static const struct {
     {"kg/m3", "a density", "2.5 g/cm3"},
     {"Pa", "a pressure", "70 GPa"},
     {"N", "a force", "10 kN"},
+    {"N/m", "a stiffness", "100 kN/m"},
     {"J", "an energy", "3 J"},
 };
 

@@ -22,6 +22,16 @@ static void list_clear(struct contact_list *list)
     *list = (struct contact_list){0};
 }
 
+void contact_set_init(struct contact_set *contacts, bool full, bool ledger)
+{
+    *contacts = (struct contact_set){.full = full, .ledger = ledger};
+}
+
+static bool has_lane(const struct contact_set *contacts, int lane)
+{
+    return contact_lane_used(lane, contacts->full, contacts->ledger);
+}
+
 void contact_set_clear(struct contact_set *contacts)
 {
     list_clear(&contacts->now);
@@ -32,7 +42,7 @@ void contact_set_clear(struct contact_set *contacts)
 }
 
 /* Room for n entries, the padding and what kernels look ahead; contents are lost. */
-static void list_reserve(struct contact_list *list, int n)
+static void list_reserve(const struct contact_set *contacts, struct contact_list *list, int n)
 {
     const int needed = n + CONTACT_PAD + CONTACT_AHEAD;
     if (needed <= list->capacity)
@@ -44,18 +54,20 @@ static void list_reserve(struct contact_list *list, int n)
     list->first = array_allocate_rows(capacity, sizeof(int));
     list->second = array_allocate_rows(capacity, sizeof(int));
     for (int l = 0; l < CONTACT_LANES; l++)
-        list->history[l] = array_allocate_rows(capacity, sizeof(double));
+        if (has_lane(contacts, l))
+            list->history[l] = array_allocate_rows(capacity, sizeof(double));
 }
 
-static void list_pad(struct contact_list *list, int dummy)
+static void list_pad(struct contact_set *contacts, int dummy)
 {
+    struct contact_list *list = &contacts->now;
     list->n_padded = (list->n + CONTACT_PAD - 1) / CONTACT_PAD * CONTACT_PAD;
     for (int k = list->n; k < list->n_padded + CONTACT_AHEAD; k++) {
         list->first[k] = dummy;
         list->second[k] = dummy + 1;
     }
     for (int l = 0; l < CONTACT_LANES; l++) {
-        for (int k = list->n; k < list->n_padded; k++)
+        for (int k = list->n; has_lane(contacts, l) && k < list->n_padded; k++)
             list->history[l][k] = 0.0;
     }
 }
@@ -98,7 +110,7 @@ static void select_pairs(struct contact_set *contacts, const struct candidates *
     }
     list->n = n;
     for (int l = 0; l < CONTACT_LANES; l++) {
-        for (int k = 0; k < n; k++)
+        for (int k = 0; has_lane(contacts, l) && k < n; k++)
             list->history[l][k] = 0.0;
     }
 }
@@ -113,13 +125,10 @@ static int find_entry(const struct contact_set *contacts, int first, int second)
     return -1;
 }
 
-/* Seen from the other side, the tangential force turns round; contact radius and normal
- * velocity stay. */
-static void put_history(struct contact_list *list, int entry,
-                        const double history[CONTACT_LANES], bool turned)
+/* Seen from the other side, vectors turn round; the rest stays. */
+static double seen_from(bool other_side, int lane, double h)
 {
-    for (int l = 0; l < CONTACT_LANES; l++)
-        list->history[l][entry] = turned && l < CONTACT_RADIUS_LANE ? -history[l] : history[l];
+    return other_side && contact_lane_turns(lane) ? -h : h;
 }
 
 static void place_history(struct contact_set *contacts, const struct candidates *candidates,
@@ -129,7 +138,9 @@ static void place_history(struct contact_set *contacts, const struct candidates 
     const int entry =
         turned ? find_entry(contacts, second, first) : find_entry(contacts, first, second);
     CHECK(entry >= 0, "a touching contact is not in the list");
-    put_history(&contacts->now, entry, history, turned);
+    for (int l = 0; l < CONTACT_LANES; l++)
+        if (has_lane(contacts, l))
+            contacts->now.history[l][entry] = seen_from(turned, l, history[l]);
 }
 
 static void carry_history(struct contact_set *contacts, const struct candidates *candidates,
@@ -147,7 +158,7 @@ static void carry_history(struct contact_set *contacts, const struct candidates 
             continue;
         double history[CONTACT_LANES];
         for (int l = 0; l < CONTACT_LANES; l++)
-            history[l] = before->history[l][k];
+            history[l] = has_lane(contacts, l) ? before->history[l][k] : 0.0;
         place_history(contacts, candidates, first, second, history);
     }
 }
@@ -159,7 +170,7 @@ void contact_set_prune(struct contact_set *contacts, const struct candidates *ca
     const struct contact_list swap = contacts->before;
     contacts->before = contacts->now;
     contacts->now = swap;
-    list_reserve(&contacts->now, candidates->n);
+    list_reserve(contacts, &contacts->now, candidates->n);
     if (spheres->n_all > contacts->row_capacity) {
         const size_t capacity =
             array_capacity((size_t)contacts->row_capacity, (size_t)spheres->n_all);
@@ -172,7 +183,7 @@ void contact_set_prune(struct contact_set *contacts, const struct candidates *ca
     double *inner = array_allocate((size_t)spheres->n_all, sizeof *inner);
     choose_allowances(spheres, inner, base, horizon, keep_all);
     select_pairs(contacts, candidates, spheres, inner, keep_all);
-    list_pad(&contacts->now, spheres->n_all);
+    list_pad(contacts, spheres->n_all);
     carry_history(contacts, candidates, spheres, moved);
     free(inner);
 }
@@ -198,10 +209,9 @@ int contact_set_records(const struct contact_set *contacts, const struct spheres
         struct contact_record *record = &(*records)[n++];
         record->first_id = spheres->id[lower];
         record->second_id = spheres->id[turned ? i : j];
-        for (int l = 0; l < CONTACT_LANES; l++) {
-            const double h = list->history[l][k];
-            record->history[l] = turned && l < CONTACT_RADIUS_LANE ? -h : h;
-        }
+        for (int l = 0; l < CONTACT_LANES; l++)
+            record->history[l] =
+                has_lane(contacts, l) ? seen_from(turned, l, list->history[l][k]) : 0.0;
     }
     return n;
 }

@@ -7,6 +7,12 @@
  *   0..2 tangential spring force that the second exerts on the first [N]
  *   3    contact radius of the last step [m]; > 0 exactly when the two touched
  *   4    normal relative velocity of the last step [m/s]
+ * with the ledger on
+ *   5..7 force of the dashpots, as 0..2 [N]
+ * and, where the job's pairs of materials need them (`full`),
+ *   8..10 rolling spring force, as 0..2 [N]
+ *   11   twisting spring force along the normal [N]
+ *   12   1 where the contact slid in the last step
  * A contact that does not touch holds +0.0 in all lanes.
  */
 #ifndef TREMIE_CONTACT_CONTACT_SET_H
@@ -15,7 +21,15 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-enum { CONTACT_LANES = 5, CONTACT_RADIUS_LANE = 3, CONTACT_PAD = 8, CONTACT_AHEAD = 128 };
+enum {
+    CONTACT_LANES = 13, /* at most */
+    CONTACT_RADIUS_LANE = 3,
+    CONTACT_DRAG_LANE = 5,
+    CONTACT_ROLLING_LANE = 8,
+    CONTACT_TWISTING_LANE = 11,
+    CONTACT_PAD = 8,
+    CONTACT_AHEAD = 128
+};
 
 struct candidates;
 struct spheres;
@@ -26,10 +40,11 @@ struct contact_list {
     int n_padded; /* a multiple of CONTACT_PAD; the padding pairs the two dummies */
     int capacity;
     int *first, *second; /* storage indices, CONTACT_AHEAD more of them than n_padded */
-    double *history[CONTACT_LANES];
+    double *history[CONTACT_LANES]; /* NULL where the job needs no such lane */
 };
 
 struct contact_set {
+    bool full, ledger; /* which lanes there are */
     struct contact_list now;
     struct contact_list before; /* the list that `now` replaced, and room for the next one */
     int *row_begin, *row_end;   /* entries of `now` whose first is sphere i */
@@ -37,7 +52,7 @@ struct contact_set {
 };
 
 /* A touching contact by ids, first_id < second_id, history oriented from first to second: what
- * migrates, is saved and compared. */
+ * migrates, is saved and compared.  Lanes that the job does not need hold zeros. */
 struct contact_record {
     int64_t first_id, second_id;
     double history[CONTACT_LANES];
@@ -48,6 +63,22 @@ static inline bool contact_touches(const struct contact_list *list, int k)
     return list->history[CONTACT_RADIUS_LANE][k] > 0.0;
 }
 
+/* Is this lane there, in a job with rolling, twisting or static friction (full), with the
+ * ledger on? */
+static inline bool contact_lane_used(int lane, bool full, bool ledger)
+{
+    return lane < CONTACT_DRAG_LANE || (lane < CONTACT_ROLLING_LANE ? ledger : full);
+}
+
+/* Does this lane change its sign when the first and the second change places?  Forces in space
+ * do. */
+static inline bool contact_lane_turns(int lane)
+{
+    return lane < CONTACT_RADIUS_LANE ||
+           (lane >= CONTACT_DRAG_LANE && lane < CONTACT_TWISTING_LANE);
+}
+
+void contact_set_init(struct contact_set *contacts, bool full, bool ledger);
 void contact_set_clear(struct contact_set *contacts);
 
 /*

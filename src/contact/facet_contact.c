@@ -29,6 +29,7 @@ struct acting {
     int entry, sphere, body;
     struct vec3 point; /* [m] */
     struct vec3 wall;  /* velocity of the body there [m/s] */
+    struct vec3 turns; /* angular velocity of the body [rad/s] */
 };
 
 /* Quick sums of a body: force and nothing, torque and work. */
@@ -270,16 +271,21 @@ static void merge_loads(struct facet_contacts *facets, int b)
     memset(quick, 0, sizeof *quick);
 }
 
-/* Gives a body the force on it, its torque and the work of its motion. `force` becomes what the
- * exact sums took, so that the sphere's is the opposite to the last bit. */
-static void load_body(const struct step *step, const struct acting *acting, double force[4])
+/* Gives a body the force on it, its torque (`twist` besides the force's) and the work of its
+ * motion. `force` becomes what the exact sums took, so that the sphere's is the opposite to the
+ * last bit. */
+static void load_body(const struct step *step, const struct acting *acting, double force[4],
+                      struct vec3 twist)
 {
     struct quick_load *load = &step->facets->work->loads[acting->body];
     const struct vec3 p = acting->point, path = vec3_scale(step->dt, acting->wall);
     const double size = size_of(force[0]) + size_of(force[1]) + size_of(force[2]);
     const double arm = size_of(p.x) + size_of(p.y) + size_of(p.z);
     const double way = size_of(path.x) + size_of(path.y) + size_of(path.z);
-    if (!(size * (1.0 + arm + way) < EXACT_FOUR_LIMIT)) {
+    const struct vec3 turn = vec3_scale(step->dt, acting->turns);
+    const double twists = (size_of(twist.x) + size_of(twist.y) + size_of(twist.z)) *
+                          (1.0 + size_of(turn.x) + size_of(turn.y) + size_of(turn.z));
+    if (!(size * (1.0 + arm + way) + twists < EXACT_FOUR_LIMIT)) {
         /* Something has run away: the sum takes note of it, as it does of single terms. */
         step->facets->loads[acting->body].force[0].overflow++;
         force[0] = force[1] = force[2] = 0.0;
@@ -287,8 +293,9 @@ static void load_body(const struct step *step, const struct acting *acting, doub
     }
     exact_four_add(&load->force, force, force);
     const struct vec3 taken = {force[0], force[1], force[2]};
-    const struct vec3 torque = vec3_cross(p, taken);
-    double others[4] = {torque.x, torque.y, torque.z, -vec3_dot(taken, path)};
+    const struct vec3 torque = vec3_add(vec3_cross(p, taken), twist);
+    double others[4] = {torque.x, torque.y, torque.z,
+                        -vec3_dot(taken, path) - vec3_dot(twist, turn)};
     exact_four_add(&load->torque, others, others);
     if (load->force.n_terms >= MERGE_AFTER)
         merge_loads(step->facets, acting->body);
@@ -306,15 +313,18 @@ static void press(const struct step *step, int k)
         vec3_scale(-sphere_radius(step->spheres, i), vec3_cross(n, grip));
     double force[4] = {batch->push[k] * n.x + grip.x, batch->push[k] * n.y + grip.y,
                        batch->push[k] * n.z + grip.z, 0.0}; /* on the body [N] */
-    load_body(step, acting, force);
+    struct vec3 twist = {0.0, 0.0, 0.0};                    /* on the body [N m] */
+    if (step->materials->full)
+        twist = (struct vec3){batch->torque[0][k], batch->torque[1][k], batch->torque[2][k]};
+    load_body(step, acting, force, twist);
 
     double *row = step->spheres->force[i].lane;
     row[0] -= force[0];
     row[1] -= force[1];
     row[2] -= force[2];
-    row[4] += torque.x;
-    row[5] += torque.y;
-    row[6] += torque.z;
+    row[4] += torque.x - twist.x;
+    row[5] += torque.y - twist.y;
+    row[6] += torque.z - twist.z;
     if (step->ledger) {
         row[3] += batch->lost_friction[k];
         row[7] += batch->lost_damping[k];
@@ -328,7 +338,7 @@ static void press(const struct step *step, int k)
 static void empty_batch(const struct step *step)
 {
     struct facet_kernel_batch *batch = &step->facets->work->batch;
-    facet_kernel_apply(batch, step->dt, step->ledger);
+    facet_kernel_apply(batch, step->dt, step->materials->full, step->ledger);
     for (int k = 0; k < batch->n; k++)
         press(step, k);
     batch->n = 0;
@@ -364,23 +374,22 @@ static void add_contact(const struct step *step, int entry, const struct contact
         vec3_add(vec3_of(sphere_velocity(spheres, contact->sphere)), rolling);
     const struct vec3 wall = wall_velocity(body, at->point);
     const struct vec3 velocity = vec3_sub(wall, surface);
+    const struct vec3 still = {0.0, 0.0, 0.0}, turns = body->moves ? body->spin_now : still;
     const double normals[3] = {normal.x, normal.y, normal.z};
     const double velocities[3] = {velocity.x, velocity.y, velocity.z};
+    const double spins[3] = {turns.x - spin[4], turns.y - spin[5], turns.z - spin[6]};
 
     step->facets->work->acting[k] =
-        (struct acting){entry, contact->sphere, contact->body, at->point, wall};
+        (struct acting){entry, contact->sphere, contact->body, at->point, wall, turns};
     for (int x = 0; x < 3; x++) {
         batch->normal[x][k] = normals[x];
         batch->velocity[x][k] = velocities[x];
+        batch->spin[x][k] = spins[x];
     }
     batch->overlap[k] = overlap;
     batch->inverse_radius[k] = spin[3];
     batch->inverse_mass[k] = spin[7];
-    batch->pair_normal[k] = pair->normal;
-    batch->pair_tangential[k] = pair->tangential;
-    batch->pair_damping[k] = pair->damping;
-    batch->pair_damping_ratio[k] = pair->damping_ratio;
-    batch->pair_friction[k] = pair->friction;
+    batch->pair[k] = pair;
     for (int h = 0; h < CONTACT_LANES; h++)
         batch->history[h][k] = contact->history[h];
     const double relative = overlap * spin[3];

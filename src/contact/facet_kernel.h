@@ -23,22 +23,21 @@ struct facet_kernel_batch {
     double overlap[FACET_KERNEL_BATCH];        /* [m]; 0 for a contact that ends */
     double inverse_radius[FACET_KERNEL_BATCH]; /* [1/m] */
     double inverse_mass[FACET_KERNEL_BATCH];   /* [1/kg] */
-    double pair_normal[FACET_KERNEL_BATCH];    /* struct material_pair, member by member */
-    double pair_tangential[FACET_KERNEL_BATCH];
-    double pair_damping[FACET_KERNEL_BATCH];
-    double pair_damping_ratio[FACET_KERNEL_BATCH];
-    double pair_friction[FACET_KERNEL_BATCH];
+    double spin[3][FACET_KERNEL_BATCH];        /* of the body less the sphere's [rad/s] */
+    const struct material_pair *pair[FACET_KERNEL_BATCH];
     /* Brought to the present. */
     double history[CONTACT_LANES][FACET_KERNEL_BATCH];
     /* Written. */
-    double push[FACET_KERNEL_BATCH];    /* normal force [N] */
-    double grip[3][FACET_KERNEL_BATCH]; /* tangential force on the facet [N] */
+    double push[FACET_KERNEL_BATCH];      /* normal force [N] */
+    double grip[3][FACET_KERNEL_BATCH];   /* tangential force on the facet [N] */
+    double torque[3][FACET_KERNEL_BATCH]; /* of a full law, on the facet [N m] */
     double
         lost_friction[FACET_KERNEL_BATCH]; /* [J]; this and the next two with the ledger only */
     double lost_damping[FACET_KERNEL_BATCH]; /* [J] */
     double lost_law[FACET_KERNEL_BATCH];     /* [J] */
 } __attribute__((aligned(64)));
 
-void facet_kernel_apply(struct facet_kernel_batch *batch, double dt, bool ledger);
+/* full: with rolling, twisting and static friction. */
+void facet_kernel_apply(struct facet_kernel_batch *batch, double dt, bool full, bool ledger);
 
 #endif

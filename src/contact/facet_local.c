@@ -224,18 +224,25 @@ static const struct facet_local_touch *heir_of(const struct facet_local *local,
     return heir;
 }
 
-/* Moves a history; its force is turned into the new tangent plane, its size kept. */
+/* Turns a force into a tangent plane, its size kept. */
+static void turn_force(double force[3], struct vec3 normal)
+{
+    const struct vec3 old = {force[0], force[1], force[2]};
+    const struct vec3 flat = vec3_axpy(old, -vec3_dot(old, normal), normal);
+    const double size = vec3_norm(old), flat_size = vec3_norm(flat);
+    const double scale = flat_size > 0.0 ? size / flat_size : 0.0;
+    force[0] = scale * flat.x;
+    force[1] = scale * flat.y;
+    force[2] = scale * flat.z;
+}
+
+/* Moves a history; its forces are turned with the normal. */
 static void move_history(double *from, double *to, struct vec3 normal)
 {
-    const struct vec3 force = {from[0], from[1], from[2]};
-    const struct vec3 flat = vec3_axpy(force, -vec3_dot(force, normal), normal);
-    const double size = vec3_norm(force), flat_size = vec3_norm(flat);
-    const double scale = flat_size > 0.0 ? size / flat_size : 0.0;
     memcpy(to, from, CONTACT_LANES * sizeof *to);
-    to[0] = scale * flat.x;
-    to[1] = scale * flat.y;
-    to[2] = scale * flat.z;
     memset(from, 0, CONTACT_LANES * sizeof *from);
+    turn_force(to, normal);
+    turn_force(to + CONTACT_ROLLING_LANE, normal);
 }
 
 static void hand_over(struct facet_local *local, struct facet_contact *group,

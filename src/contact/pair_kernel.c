@@ -12,8 +12,11 @@
 #include "contact/pair_kernel_blocks.h"
 #include "physics/contact_law.h"
 
-_Static_assert((int)CONTACT_LANES == (int)CONTACT_LAW_HISTORY &&
-                   (int)CONTACT_RADIUS_LANE == (int)CONTACT_LAW_RADIUS,
+_Static_assert((int)CONTACT_LANES == (int)CONTACT_LAW_LANES &&
+                   (int)CONTACT_DRAG_LANE == (int)CONTACT_LAW_DRAG &&
+                   (int)CONTACT_RADIUS_LANE == (int)CONTACT_LAW_RADIUS &&
+                   (int)CONTACT_ROLLING_LANE == (int)CONTACT_LAW_ROLLING &&
+                   (int)CONTACT_TWISTING_LANE == (int)CONTACT_LAW_TWISTING,
                "contact sets keep what the law remembers");
 
 static bool always(void)
@@ -81,10 +84,11 @@ static enum pair_kernel_isa widest(void)
     return isa;
 }
 
-struct pair_kernel pair_kernel_choose(enum pair_kernel_isa isa, bool uniform, bool ledger)
+struct pair_kernel pair_kernel_choose(enum pair_kernel_isa isa, bool uniform, bool full,
+                                      bool ledger)
 {
     if (isa == PAIR_KERNEL_AUTO)
         isa = widest();
     CHECK(pair_kernel_isa_runs(isa), "the pair kernel %s does not run here", isas[isa].name);
-    return (struct pair_kernel){isa, isas[isa].blocks().apply[uniform][ledger]};
+    return (struct pair_kernel){isa, isas[isa].blocks().apply[uniform][full][ledger]};
 }

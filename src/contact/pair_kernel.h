@@ -35,8 +35,8 @@ enum { PAIR_KERNEL_AHEAD = 128 };
  */
 struct pair_kernel_work {
     int n_padded;
-    const int *first, *second; /* in canonical order */
-    double *history[CONTACT_LANES];
+    const int *first, *second;      /* in canonical order */
+    double *history[CONTACT_LANES]; /* those lanes that the kernel needs */
     const struct sphere_row *motion, *spin;
     struct sphere_row *force;
     const int32_t *material; /* of each sphere */
@@ -68,8 +68,10 @@ const char *pair_kernel_isa_name(enum pair_kernel_isa isa);
 /* Whether this program holds that kernel and this processor runs it. */
 bool pair_kernel_isa_runs(enum pair_kernel_isa isa);
 
-/* The kernel for spheres all of one material (uniform) or of several, with or without the
- * energy ledger.  The instruction set must run. */
-struct pair_kernel pair_kernel_choose(enum pair_kernel_isa isa, bool uniform, bool ledger);
+/* The kernel for spheres all of one material (uniform) or of several; with rolling, twisting
+ * and static friction (full) or without; with or without the energy ledger.  The instruction
+ * set must run. */
+struct pair_kernel pair_kernel_choose(enum pair_kernel_isa isa, bool uniform, bool full,
+                                      bool ledger);
 
 #endif

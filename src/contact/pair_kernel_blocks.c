@@ -102,9 +102,14 @@ struct block {
     size_t first[WIDTH], second[WIDTH]; /* where the rows are */
     lanes motion[8]; /* {x y z of second - first, R_i + R_j | v of second - first, R_j - R_i} */
     lanes spin[8];   /* sums {R w (3) 1/R | w (3) 1/m} */
+    lanes turning[8]; /* of a full law: {second - first of w (3) and 1/m} last */
 };
 
-LANES_INLINE void block_load(struct block *block, const struct pair_kernel_work *work, int k)
+/* The halves of the spin rows that hold w: where a row is several vectors, only those. */
+enum { TURNING = PARTS > 1 ? PARTS / 2 : 0 };
+
+LANES_INLINE void block_load(struct block *block, const struct pair_kernel_work *work, int k,
+                             bool full)
 {
     static const double signs[8] = {1.0, 1.0, 1.0, -1.0, 1.0, 1.0, 1.0, 1.0};
 
@@ -122,10 +127,17 @@ LANES_INLINE void block_load(struct block *block, const struct pair_kernel_work 
                 row_part(work->motion, j, part) - (has_radius ? of_first * sign : of_first);
             block->spin[WIDTH * part + l] =
                 row_part(work->spin, j, part) + row_part(work->spin, i, part);
+            if (full && part >= TURNING)
+                block->turning[WIDTH * part + l] =
+                    row_part(work->spin, j, part) - row_part(work->spin, i, part);
         }
     }
     transpose(block->motion);
     transpose(block->spin);
+    if (full)
+#pragma GCC unroll 4
+        for (int part = TURNING; part < PARTS; part++)
+            transpose_square(block->turning + WIDTH * part);
 }
 
 LANES_INLINE void fetch_ahead(const struct pair_kernel_work *work, int k)
@@ -140,7 +152,7 @@ LANES_INLINE void fetch_ahead(const struct pair_kernel_work *work, int k)
 }
 
 /* How the spheres meet.  Lever arms reach to the middle of the overlap. */
-LANES_INLINE struct contact_law_meeting block_meeting(const struct block *block)
+LANES_INLINE struct contact_law_meeting block_meeting(const struct block *block, bool full)
 {
     const lanes *x = block->motion, *v = block->motion + 4, *s = block->spin,
                 *w = block->spin + 4;
@@ -159,6 +171,10 @@ LANES_INLINE struct contact_law_meeting block_meeting(const struct block *block)
     meeting.velocity[0] = v[0] - (r[1] * n[2] - r[2] * n[1]);
     meeting.velocity[1] = v[1] - (r[2] * n[0] - r[0] * n[2]);
     meeting.velocity[2] = v[2] - (r[0] * n[1] - r[1] * n[0]);
+    if (full)
+#pragma GCC unroll 3
+        for (int k = 0; k < 3; k++)
+            meeting.spin[k] = block->turning[4 + k];
     return meeting;
 }
 
@@ -170,8 +186,8 @@ enum { FORCE_APART = PARTS > 1 };
  * torque's part where the force's lies apart. */
 LANES_INLINE void block_rows(const struct block *block,
                              const struct contact_law_meeting *meeting,
-                             const struct contact_law_result *result, bool ledger,
-                             lanes first[8], lanes second[8])
+                             const struct contact_law_result *result,
+                             struct contact_law_choice choice, lanes first[8], lanes second[8])
 {
     const lanes *n = meeting->normal, *f = result->tangential;
     const lanes sum = block->motion[3], difference = block->motion[7],
@@ -188,9 +204,13 @@ LANES_INLINE void block_rows(const struct block *block,
             first[x] = -second[x];
         first[4 + x] = arm_first * turn[x];
         second[4 + x] = arm_second * turn[x];
+        if (choice.full) {
+            first[4 + x] -= result->torque[x];
+            second[4 + x] += result->torque[x];
+        }
     }
-    first[3] = second[3] = ledger ? 0.5 * result->lost_friction : lanes_all(0.0);
-    first[7] = second[7] = ledger ? 0.5 * result->lost_damping : lanes_all(0.0);
+    first[3] = second[3] = choice.ledger ? 0.5 * result->lost_friction : lanes_all(0.0);
+    first[7] = second[7] = choice.ledger ? 0.5 * result->lost_damping : lanes_all(0.0);
     transpose(second);
 #pragma GCC unroll 4
     for (int part = FORCE_APART ? PARTS / 2 : 0; part < PARTS; part++)
@@ -226,13 +246,6 @@ LANES_INLINE void block_add(const struct pair_kernel_work *work, const struct bl
     }
 }
 
-LANES_INLINE struct contact_law_constants constants_of_one(const struct material_pair *pair)
-{
-    return (struct contact_law_constants){
-        lanes_all(pair->normal), lanes_all(pair->tangential), lanes_all(pair->damping),
-        lanes_all(pair->damping_ratio), lanes_all(pair->friction)};
-}
-
 LANES_INLINE const struct material_pair *pair_of(const struct pair_kernel_work *work, int k)
 {
     const int a = work->material[work->first[k]], b = work->material[work->second[k]];
@@ -241,25 +254,20 @@ LANES_INLINE const struct material_pair *pair_of(const struct pair_kernel_work *
 }
 
 LANES_INLINE struct contact_law_constants constants_of_each(const struct pair_kernel_work *work,
-                                                            int k)
+                                                            int k, bool full)
 {
-    struct contact_law_constants constants = constants_of_one(pair_of(work, k));
+    const struct material_pair *pairs[WIDTH];
 
 #pragma GCC unroll 8
-    for (int l = 1; l < WIDTH; l++) {
-        const struct material_pair *pair = pair_of(work, k + l);
-        constants.normal[l] = pair->normal;
-        constants.tangential[l] = pair->tangential;
-        constants.damping[l] = pair->damping;
-        constants.damping_ratio[l] = pair->damping_ratio;
-        constants.friction[l] = pair->friction;
-    }
-    return constants;
+    for (int l = 0; l < WIDTH; l++)
+        pairs[l] = pair_of(work, k + l);
+    return contact_law_constants_of_each(pairs, full);
 }
 
 /* Compiled for each choice, so that what is not asked for costs nothing.  Works on a copy,
  * which the compiler knows that no row overlaps. */
-LANES_INLINE void apply(struct pair_kernel_work *given, bool uniform, bool ledger)
+LANES_INLINE void apply(struct pair_kernel_work *given, bool uniform,
+                        struct contact_law_choice choice)
 {
     const struct pair_kernel_work own = *given, *work = &own;
     const lanes dt = lanes_all(work->dt);
@@ -270,27 +278,29 @@ LANES_INLINE void apply(struct pair_kernel_work *given, bool uniform, bool ledge
     if (work->n_padded == 0)
         return;
     if (uniform)
-        constants = constants_of_one(pair_of(work, 0));
+        constants = contact_law_constants_of_one(pair_of(work, 0));
     for (int k = 0; k < work->n_padded; k += WIDTH) {
         struct block block;
         struct contact_law_result result;
         lanes history[CONTACT_LANES], first[8], second[8];
 
         fetch_ahead(work, k);
-        block_load(&block, work, k);
+        block_load(&block, work, k, choice.full);
         if (!uniform)
-            constants = constants_of_each(work, k);
-#pragma GCC unroll 5
+            constants = constants_of_each(work, k, choice.full);
+#pragma GCC unroll 13
         for (int h = 0; h < CONTACT_LANES; h++)
-            history[h] = lanes_load(work->history[h] + k);
-        const struct contact_law_meeting meeting = block_meeting(&block);
-        contact_law(&meeting, &constants, dt, ledger, history, &result);
-#pragma GCC unroll 5
+            if (contact_lane_used(h, choice.full, choice.ledger))
+                history[h] = lanes_load(work->history[h] + k);
+        const struct contact_law_meeting meeting = block_meeting(&block, choice.full);
+        contact_law(&meeting, &constants, dt, choice, history, &result);
+#pragma GCC unroll 13
         for (int h = 0; h < CONTACT_LANES; h++)
-            lanes_store(work->history[h] + k, history[h]);
-        block_rows(&block, &meeting, &result, ledger, first, second);
+            if (contact_lane_used(h, choice.full, choice.ledger))
+                lanes_store(work->history[h] + k, history[h]);
+        block_rows(&block, &meeting, &result, choice, first, second);
         block_add(work, &block, first, second);
-        if (ledger)
+        if (choice.ledger)
 #pragma GCC unroll 8
             for (int l = 0; l < WIDTH; l++)
                 work->dissipated_tangential[work->first[k + l]] += result.lost_law[l];
@@ -302,24 +312,23 @@ LANES_INLINE void apply(struct pair_kernel_work *given, bool uniform, bool ledge
             0.5 * deepest[l] > given->overlap_max ? 0.5 * deepest[l] : given->overlap_max;
 }
 
-static void apply_mixed(struct pair_kernel_work *work)
-{
-    apply(work, false, false);
-}
-static void apply_mixed_ledger(struct pair_kernel_work *work)
-{
-    apply(work, false, true);
-}
-static void apply_uniform(struct pair_kernel_work *work)
-{
-    apply(work, true, false);
-}
-static void apply_uniform_ledger(struct pair_kernel_work *work)
-{
-    apply(work, true, true);
-}
+#define APPLY(name, uniform, ...)                                                              \
+    static void name(struct pair_kernel_work *work)                                            \
+    {                                                                                          \
+        apply(work, uniform, (struct contact_law_choice){__VA_ARGS__});                        \
+    }
+APPLY(apply_mixed, false, .ledger = false)
+APPLY(apply_mixed_ledger, false, .ledger = true)
+APPLY(apply_mixed_full, false, .full = true)
+APPLY(apply_mixed_full_ledger, false, .full = true, .ledger = true)
+APPLY(apply_uniform, true, .ledger = false)
+APPLY(apply_uniform_ledger, true, .ledger = true)
+APPLY(apply_uniform_full, true, .full = true)
+APPLY(apply_uniform_full_ledger, true, .full = true, .ledger = true)
 
 struct pair_kernel_blocks PAIR_KERNEL_BLOCKS(void) {
     return (struct pair_kernel_blocks){
-        {{apply_mixed, apply_mixed_ledger}, {apply_uniform, apply_uniform_ledger}}};
+        {{{apply_mixed, apply_mixed_ledger}, {apply_mixed_full, apply_mixed_full_ledger}},
+         {{apply_uniform, apply_uniform_ledger},
+          {apply_uniform_full, apply_uniform_full_ledger}}}};
 }

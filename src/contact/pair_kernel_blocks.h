@@ -5,7 +5,7 @@
 struct pair_kernel_work;
 
 struct pair_kernel_blocks {
-    void (*apply[2][2])(struct pair_kernel_work *work); /* [uniform][ledger] */
+    void (*apply[2][2][2])(struct pair_kernel_work *work); /* [uniform][full][ledger] */
 };
 
 struct pair_kernel_blocks pair_kernel_blocks_generic(void);

@@ -21,11 +21,21 @@ struct job_material {
     double poisson; /* [-] */
 };
 
+enum job_law { JOB_LAW_HERTZ, JOB_LAW_LINEAR, JOB_LAW_DEFAULT /* that of the job */ };
+enum job_rolling { JOB_ROLLING_SPRING, JOB_ROLLING_CONSTANT };
+
 /* Contact between two materials; a <= b.  Every pair that can meet has one. */
 struct job_pair {
     int a, b;
-    double friction;    /* Coulomb coefficient [-] */
-    double restitution; /* [-], what comes out, whatever the law */
+    double friction;        /* Coulomb coefficient [-] */
+    double static_friction; /* [-]; negative: the same */
+    double restitution;     /* [-], what comes out, whatever the law */
+    enum job_law law;
+    double stiffness;        /* linear: normal [N/m]; 0: that of the job */
+    double tangential_ratio; /* linear: tangential over normal stiffness [-] */
+    enum job_rolling rolling;
+    double rolling_friction;  /* [-] */
+    double twisting_friction; /* [-] */
 };
 
 enum job_packing { JOB_PACKING_LATTICE, JOB_PACKING_CSV };
@@ -118,6 +128,8 @@ struct job {
     struct job_spheres *spheres;
     struct job_body *bodies;
     struct job_section *sections; /* at most 60 */
+    enum job_law law;             /* of pairs that say nothing else */
+    double stiffness;             /* linear: normal, of such pairs [N/m]; 0: none given */
     bool energy_ledger;           /* contact.ledger: on by default */
     struct {
         bool given;           /* else: the extent of the scene, grown by its size */

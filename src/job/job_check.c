@@ -402,6 +402,26 @@ static void pairs_check(const struct check *check, const bool *falling, const bo
     free(given);
 }
 
+/* What the members of a pair ask of each other. */
+static void laws_check(const struct check *check)
+{
+    const struct job *job = check->job;
+    char path[64];
+
+    for (int k = 0; k < job->n_pairs && is_clean(check, "contact"); k++) {
+        const struct job_pair *pair = &job->pairs[k];
+        const enum job_law law = pair->law == JOB_LAW_DEFAULT ? job->law : pair->law;
+        PATH("contact.pairs.%d", k);
+        if (law == JOB_LAW_LINEAR && pair->stiffness == 0.0 && job->stiffness == 0.0)
+            mistake(check, path,
+                    "has the linear law but no stiffness; stiffness: ... in N/m is expected, "
+                    "here or in contact");
+        if (pair->static_friction >= 0.0 && pair->static_friction < pair->friction)
+            mistake(check, path,
+                    "has a static_friction below its friction; at least as much is expected");
+    }
+}
+
 void job_check(const struct job *job, const struct yaml_tree_node *root, bool read_files,
                bool *used, struct mistakes *mistakes)
 {
@@ -416,6 +436,7 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     bodies_check(&check, standing);
     domain_check(&check);
     pairs_check(&check, falling, standing);
+    laws_check(&check);
     for (int m = 0; m < job->n_materials; m++)
         used[m] = used[m] || falling[m] || standing[m];
     free(falling);

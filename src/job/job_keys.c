@@ -37,7 +37,9 @@
     }
 
 static const char *const dimensions[] = {"3", NULL};
-static const char *const laws[] = {"hertz-mindlin", NULL};
+static const char *const laws[] = {"hertz-mindlin", "linear", NULL};
+static const char *const pair_laws[] = {"hertz-mindlin", "linear", "default", NULL};
+static const char *const rollings[] = {"spring", "constant", NULL};
 static const char *const models[] = {"rigid", NULL};
 static const char *const packings[] = {"lattice", "csv", NULL};
 static const char *const geometries[] = {"plane", "box", "hopper", "mesh", NULL};
@@ -74,10 +76,42 @@ static const struct schema_key pair_keys[] = {
     {"restitution", SCHEMA_NUMBER,
      "speed after over speed before a straight impact: what comes out, damping is chosen so",
      .unit = "1", .required = true, BETWEEN(0.05, 1.0), AT(struct job_pair, restitution)},
+    {"static_friction", SCHEMA_NUMBER,
+     "friction of what does not slide yet, at least that of what slides; `friction` makes "
+     "them equal",
+     .unit = "1", .standard = "friction", BETWEEN(0.0, 100.0), .word = "friction",
+     .word_value = -1.0, AT(struct job_pair, static_friction)},
+    {"rolling_friction", SCHEMA_NUMBER,
+     "greatest torque against rolling over the normal force times the effective radius",
+     .unit = "1", .standard = "0", BETWEEN(0.0, 100.0), AT(struct job_pair, rolling_friction)},
+    {"rolling", SCHEMA_CHOICE,
+     "how rolling is resisted: a spring that gives way at that torque and holds what is at "
+     "rest, or that torque whenever it rolls, which holds nothing",
+     .standard = "spring", .choices = rollings, AT(struct job_pair, rolling)},
+    {"twisting_friction", SCHEMA_NUMBER,
+     "greatest torque against turning about the normal over the normal force times the "
+     "effective radius; a spring holds up to it",
+     .unit = "1", .standard = "0", BETWEEN(0.0, 100.0), AT(struct job_pair, twisting_friction)},
+    {"law", SCHEMA_CHOICE, "the pair's own contact law; `default` is `contact.law`",
+     .standard = "default", .choices = pair_laws, AT(struct job_pair, law)},
+    {"stiffness", SCHEMA_NUMBER,
+     "normal stiffness of the linear law; `default` is `contact.stiffness`", .unit = "N/m",
+     .standard = "default", ABOVE_TO(0.0, 1e15), .word = "default", .word_value = 0.0,
+     AT(struct job_pair, stiffness)},
+    {"tangential_ratio", SCHEMA_NUMBER, "tangential over normal stiffness of the linear law",
+     .unit = "1", .standard = "0.2857142857142857", ABOVE_TO(0.0, 100.0),
+     AT(struct job_pair, tangential_ratio)},
     END};
 
 static const struct schema_key contact_keys[] = {
-    {"law", SCHEMA_CHOICE, "the contact law", .standard = "hertz-mindlin", .choices = laws},
+    {"law", SCHEMA_CHOICE,
+     "the contact law: stiffness from the materials' moduli that grows with the overlap, or "
+     "springs of constant stiffness",
+     .standard = "hertz-mindlin", .choices = laws, AT(struct job, law)},
+    {"stiffness", SCHEMA_NUMBER,
+     "normal stiffness of the linear law for pairs that give none of their own", .unit = "N/m",
+     .standard = "none", ABOVE_TO(0.0, 1e15), .word = "none", .word_value = 0.0,
+     AT(struct job, stiffness)},
     {"ledger", SCHEMA_FLAG,
      "keep account of energy: kinetic, potential, elastic, dissipated, work; costs little",
      .standard = "true", AT(struct job, energy_ledger)},

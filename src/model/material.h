@@ -4,22 +4,31 @@
 #ifndef TREMIE_MODEL_MATERIAL_H
 #define TREMIE_MODEL_MATERIAL_H
 
+#include <stdbool.h>
+
 struct job;
 
 /*
- * The constants of Hertz-Mindlin contact for one pair of materials (equations in
- * src/THEORY.md). With contact radius a = sqrt(R* overlap):
- *   normal force      f_n = normal a overlap - c_n v_n,   normal = 4/3 E*           [Pa]
- *   tangential        k_t = tangential a,                 tangential = 8 G*         [Pa]
- *   normal dashpot    c_n = damping sqrt(a m*),           damping = 2 sqrt(5/6) beta sqrt(2 E*)
- *   tangential dashpot c_t = damping_ratio c_n,           damping_ratio = sqrt(8 G* / 2 E*)
+ * The constants of contact for one pair of materials (equations in src/THEORY.md, section 1).
+ * With the contact radius a = sqrt(R* overlap), or a = 1 with the linear law:
+ *   normal force       f_n = normal a overlap - c_n v_n    normal = 4/3 E*        [Pa]
+ *   tangential         k_t = tangential a,                 tangential = 8 G*      [Pa]
+ *   normal dashpot     c_n = damping sqrt(a m*),   damping = 2 sqrt(5/6) beta sqrt(2 E*)
+ *   tangential dashpot c_t = damping_ratio c_n,            damping_ratio = sqrt(8 G* / 2 E*)
+ * and with the linear law normal = k_n, tangential = k_t [N/m], damping = 2 beta sqrt(k_n),
+ * damping_ratio = sqrt(k_t / k_n).
  */
 struct material_pair {
-    double normal;        /* [Pa] */
-    double tangential;    /* [Pa] */
-    double damping;       /* [sqrt(Pa)] */
-    double damping_ratio; /* [-] */
-    double friction;      /* [-] */
+    double normal;          /* [Pa] or [N/m] */
+    double tangential;      /* [Pa] or [N/m] */
+    double damping;         /* [sqrt(Pa)] or [sqrt(N/m)] */
+    double damping_ratio;   /* [-] */
+    double friction;        /* of what slides [-] */
+    double static_friction; /* of what does not slide yet, >= friction [-] */
+    double rolling;         /* rolling friction: torque over R* f_n [-] */
+    double twisting;        /* twisting friction likewise [-] */
+    double linear;          /* 1 with the linear law, else 0 */
+    double constant_torque; /* 1 where rolling friction has no spring, else 0 */
 };
 
 struct materials {
@@ -28,6 +37,7 @@ struct materials {
     double *young;               /* [Pa] */
     double *poisson;             /* [-] */
     struct material_pair *pairs; /* n x n, symmetric; pair (a, b) at a * n + b */
+    bool full; /* some pair resists rolling or twisting or has static friction of its own */
 };
 
 void materials_build(struct materials *materials, const struct job *job);

@@ -1,20 +1,31 @@
 /*
- * What two surfaces in contact do to each other: Hertz normal to the contact with a dashpot and
- * no pull, Mindlin's no-slip stiffness along it with a memory, Coulomb's limit.  Equations in
- * src/THEORY.md, section 1; numbers in comments refer to it.
+ * What two surfaces in contact do to each other: a normal spring with a dashpot and no pull, a
+ * tangential spring with a memory, Coulomb's limit; where a pair of materials asks for it,
+ * resistance to rolling and twisting, and static friction.  Equations in src/THEORY.md, section
+ * 1; numbers in comments refer to it.
  *
  * The law is written once, in lanes (physics/lanes.h): the pair kernel takes it with as many
- * lanes as the processor has, contacts with facets take it with one, and both get the same
+ * lanes as the processor has, contacts with facets take it with two, and all get the same
  * bits.  It speaks of a contact, not of what touches: normal, overlap, relative velocity of the
  * two surfaces at the contact point, effective radius and mass.  Who calls it knows lever arms
  * and applies forces.  For a facet of prescribed motion the curvature and the inverse mass are
  * those of the sphere alone.
  *
+ * Hertz and Mindlin's springs are as stiff as the contact is wide; the linear law is theirs
+ * with a width of 1 wherever surfaces touch, so one text serves both and a list may mix them.
+ *
  * The normal points from the first to the second.  Relative velocity is the second's minus the
  * first's, so surfaces approach where v_n < 0.  The memory of a contact is
  *   0..2  force of the tangential spring, that the second exerts on the first [N]
- *   3     contact radius of the last step [m]; > 0 exactly when they touched
+ *   3     contact radius of the last step [m], 1 with the linear law; > 0 exactly when they
+ *         touched
  *   4     normal relative velocity of the last step [m/s]
+ * with the ledger on
+ *   5..7  force of both dashpots, that the second exerts on the first [N]
+ * and, only where some pair of the job needs it (`full`),
+ *   8..10 force of the rolling spring, as lanes 0..2 [N]
+ *   11    force of the twisting spring, along the normal [N]
+ *   12    1 where the contact slid in the last step, else 0
  * and belongs to the contact: it is +0.0 throughout where surfaces do not touch.
  *
  * What is chosen, and what it costs.  Velocities are those of the half step before, so a
@@ -34,16 +45,32 @@ enum {
     CONTACT_LAW_FORCE = 0, /* three lanes of history */
     CONTACT_LAW_RADIUS = 3,
     CONTACT_LAW_VELOCITY = 4,
-    CONTACT_LAW_HISTORY = 5,
+    CONTACT_LAW_DRAG = 5,    /* with the ledger on, three lanes */
+    CONTACT_LAW_ROLLING = 8, /* of a full law, three lanes */
+    CONTACT_LAW_TWISTING = 11,
+    CONTACT_LAW_SLIDING = 12,
+    CONTACT_LAW_LANES = 13,
+};
+
+/* Of what is compiled in: what is not asked for costs nothing. */
+struct contact_law_choice {
+    bool full;   /* rolling, twisting, static friction */
+    bool ledger; /* of energy */
 };
 
 /* The constants of a pair of materials, as in struct material_pair. */
 struct contact_law_constants {
-    lanes normal;        /* [Pa] */
-    lanes tangential;    /* [Pa] */
-    lanes damping;       /* [sqrt(Pa)] */
+    lanes_mask linear;
+    lanes normal;        /* [Pa]; linear: [N/m] */
+    lanes tangential;    /* [Pa]; linear: [N/m] */
+    lanes damping;       /* [sqrt(Pa)]; linear: [sqrt(N/m)] */
     lanes damping_ratio; /* [-] */
     lanes friction;      /* [-] */
+    /* Of a full law: */
+    lanes static_friction; /* [-] */
+    lanes rolling;         /* [-] */
+    lanes twisting;        /* [-] */
+    lanes_mask constant_torque;
 };
 
 /* How two surfaces meet. */
@@ -53,16 +80,19 @@ struct contact_law_meeting {
     lanes overlap;        /* [m]; 0 where they do not touch, never negative */
     lanes inverse_radius; /* 1/R*: sum of the two curvatures [1/m] */
     lanes inverse_mass;   /* 1/m*: sum of the two inverse masses [1/kg] */
+    lanes spin[3];        /* of a full law: the second's spin less the first's [rad/s] */
 };
 
 /* What comes of it.  The second feels normal * n + tangential, the first the opposite. */
 struct contact_law_result {
     lanes normal;        /* [N], >= 0: surfaces push, never pull */
     lanes tangential[3]; /* on the second [N] */
+    lanes torque[3];     /* of a full law: that resists rolling and twisting, on the second;
+                            the first feels the opposite [N m] */
     /* Energy turned to heat in the step that ends now [J]; 0 with the ledger off. */
     lanes lost_friction; /* by sliding */
-    lanes lost_damping;  /* by both dashpots */
-    lanes lost_law;      /* tangential elastic energy dropped as the stiffness changes */
+    lanes lost_damping;  /* by dashpots */
+    lanes lost_law;      /* elastic energy of springs dropped as their stiffness changes */
 };
 
 LANES_INLINE lanes contact_law_dot(const lanes a[3], const lanes b[3])
@@ -70,27 +100,85 @@ LANES_INLINE lanes contact_law_dot(const lanes a[3], const lanes b[3])
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
+/* Constants of one pair for all lanes. */
+LANES_INLINE struct contact_law_constants contact_law_constants_of_one(
+    const struct material_pair *pair)
+{
+    return (struct contact_law_constants){
+        .linear = lanes_all(pair->linear) > lanes_all(0.0),
+        .normal = lanes_all(pair->normal),
+        .tangential = lanes_all(pair->tangential),
+        .damping = lanes_all(pair->damping),
+        .damping_ratio = lanes_all(pair->damping_ratio),
+        .friction = lanes_all(pair->friction),
+        .static_friction = lanes_all(pair->static_friction),
+        .rolling = lanes_all(pair->rolling),
+        .twisting = lanes_all(pair->twisting),
+        .constant_torque = lanes_all(pair->constant_torque) > lanes_all(0.0),
+    };
+}
+
+#if LANES_WIDTH > 1
+/* Constants of a pair for each lane. */
+LANES_INLINE struct contact_law_constants contact_law_constants_of_each(
+    const struct material_pair *const pairs[LANES_WIDTH], bool full)
+{
+    lanes linear = lanes_all(pairs[0]->linear), constant = lanes_all(pairs[0]->constant_torque);
+    struct contact_law_constants all = contact_law_constants_of_one(pairs[0]);
+
+#pragma GCC unroll 8
+    for (int l = 1; l < LANES_WIDTH; l++) {
+        const struct material_pair *pair = pairs[l];
+        linear[l] = pair->linear;
+        all.normal[l] = pair->normal;
+        all.tangential[l] = pair->tangential;
+        all.damping[l] = pair->damping;
+        all.damping_ratio[l] = pair->damping_ratio;
+        all.friction[l] = pair->friction;
+        if (!full)
+            continue;
+        all.static_friction[l] = pair->static_friction;
+        all.rolling[l] = pair->rolling;
+        all.twisting[l] = pair->twisting;
+        constant[l] = pair->constant_torque;
+    }
+    all.linear = linear > lanes_all(0.0);
+    all.constant_torque = constant > lanes_all(0.0);
+    return all;
+}
+#endif
+
 /* What the law works out on its way, per contact. */
 struct contact_law_work {
     lanes_mask touching, touched; /* now; in the last step */
     lanes mass;                   /* m* [kg] */
     lanes radius;                 /* of the contact, a [m] */
     lanes inverse_old;            /* 1 / radius of the last step; infinite where new [1/m] */
-    lanes v_n, v_t[3];            /* relative velocity across and along the contact [m/s] */
+    lanes v_n;                    /* relative velocity across the contact [m/s] */
     lanes v_now;                  /* v_n brought from the half step to the step [m/s] */
-    lanes f_elastic;              /* Hertz [N] */
-    lanes turned[3];              /* memory, turned into the plane of the contact [N] */
-    lanes taken;                  /* what turning took off [N] */
+    lanes f_elastic;              /* [N] */
     lanes scale;                  /* radius over the last one where it shrinks, else 1 */
     lanes stretch;                /* tangential stiffness x dt [N s/m] */
     lanes c_t;                    /* tangential dashpot [kg/s] */
-    lanes_mask sliding;
-    lanes share; /* of the tangential force that Coulomb leaves */
-    /* With the ledger on: products of turned and v_t. */
-    lanes turned_turned, turned_v, v_v;
 };
 
-/* Hertz and the normal dashpot, cut off where they would pull. */
+/* A spring with a memory, a dashpot beside it and Coulomb's limit for both: the tangential one,
+ * the rolling one, or, with one component, the twisting one. */
+struct contact_law_spring {
+    const lanes *velocity; /* of its two ends [m/s] */
+    lanes *memory;         /* [N] */
+    lanes scale;           /* of the memory */
+    lanes stretch, c;      /* [N s/m], [kg/s] */
+    lanes hold, slide;     /* what it holds before it slides, and while it slides [N] */
+    /* What comes of it: */
+    lanes force[3]; /* of spring and dashpot, along the velocity [N] */
+    lanes_mask sliding;
+    /* With the ledger on: products of memory and velocity, and, while it slides, the mean
+     * spring force times the stretch that sliding spares it [N2]. */
+    lanes memory_memory, memory_velocity, slip;
+};
+
+/* The normal spring and its dashpot, cut off where they would pull. */
 LANES_INLINE void contact_law_push(struct contact_law_work *work,
                                    const struct contact_law_meeting *meeting,
                                    const struct contact_law_constants *pair,
@@ -106,119 +194,247 @@ LANES_INLINE void contact_law_push(struct contact_law_work *work,
     work->c_t = pair->damping_ratio * c_n;
 }
 
-/* Mindlin's spring, limited by Coulomb, and the dashpot beside it. */
-LANES_INLINE void contact_law_grip(struct contact_law_work *work,
+LANES_INLINE lanes contact_law_product(const lanes *a, const lanes *b, int n)
+{
+    return n == 1 ? a[0] * b[0] : contact_law_dot(a, b);
+}
+
+/* Lets the lanes that slide give way: h1 is the memory before, h the stretched spring, g spring
+ * and dashpot.  The slider is in series with both, so the spring keeps what the dashpot, at the
+ * spring's own rate, leaves of friction. */
+LANES_INLINE void contact_law_slide(struct contact_law_spring *spring, lanes g_squared, int n,
+                                    bool ledger, const lanes h1[3], lanes h[3], lanes g[3])
+{
+    const lanes share = spring->slide / lanes_sqrt(g_squared);
+    const lanes kept = spring->stretch / (spring->stretch + spring->c); /* (1.13) */
+    lanes slip = lanes_all(0.0);
+
+#pragma GCC unroll 3
+    for (int x = 0; x < n; x++) {
+        const lanes all = share * g[x];
+        const lanes held = h1[x] + kept * (all - h1[x]);
+        if (ledger)
+            slip += 0.5 * (h1[x] + held) * (h[x] - held);
+        g[x] = lanes_where(spring->sliding, all, g[x]);
+        h[x] = lanes_where(spring->sliding, held, h[x]);
+    }
+    spring->slip = lanes_keep(spring->sliding, slip);
+}
+
+/* Stretches a spring of n components, whose memory lies in the plane of the contact by now, and
+ * lets it slide. */
+LANES_INLINE void contact_law_stretch(struct contact_law_spring *spring, lanes_mask touching,
+                                      int n, bool ledger)
+{
+    lanes h1[3], h[3], g[3]; /* memory; spring; spring and dashpot [N] */
+
+    spring->slip = lanes_all(0.0);
+    if (ledger) {
+        spring->memory_memory = contact_law_product(spring->memory, spring->memory, n);
+        spring->memory_velocity = contact_law_product(spring->memory, spring->velocity, n);
+    }
+#pragma GCC unroll 3
+    for (int x = 0; x < n; x++) {
+        h1[x] = spring->scale * spring->memory[x];
+        h[x] = h1[x] + spring->stretch * spring->velocity[x];
+        h[x] = lanes_keep(touching, h[x]);             /* (1.11) */
+        g[x] = h[x] + spring->c * spring->velocity[x]; /* (1.12) */
+    }
+
+    /* Spring and dashpot exert no more than friction can hold.  Where no lane slides nothing
+     * would change, so skipping it changes no bit. */
+    const lanes g_squared = contact_law_product(g, g, n);
+    spring->sliding = g_squared > spring->hold * spring->hold;
+    if (lanes_any(spring->sliding))
+        contact_law_slide(spring, g_squared, n, ledger, h1, h, g);
+#pragma GCC unroll 3
+    for (int x = 0; x < n; x++) {
+        spring->force[x] = g[x];
+        spring->memory[x] = h[x];
+    }
+}
+
+/* Where the work of a spring and its dashpot went in this step, but for what the spring stores.
+ * `taken` is what turning took off the memory's square [N2], `dragged` the dashpot's work. */
+LANES_INLINE void contact_law_spring_ledger(const struct contact_law_spring *spring,
+                                            const struct contact_law_work *work, lanes taken,
+                                            lanes dragged, lanes softness, lanes dt,
+                                            struct contact_law_result *result)
+{
+    const lanes inverse_a = 1.0 / work->radius; /* infinite where they do not touch [1/m] */
+    const lanes slid = spring->slip * softness * inverse_a;
+    /* Products with the spring's force, scaled (h1). */
+    const lanes h1_h1 = spring->scale * spring->scale * spring->memory_memory;
+    const lanes h1_v = spring->scale * spring->memory_velocity;
+
+    result->lost_friction += lanes_keep(spring->sliding, slid + dragged); /* (1.16) */
+    result->lost_damping += lanes_where(spring->sliding, lanes_all(0.0), dragged);
+
+    /* The memory turned, the stiffness changed, and work was done against the force before. */
+    const lanes turned = spring->memory_memory + taken;
+    const lanes after = lanes_keep(work->touching, h1_h1 * inverse_a);
+    const lanes dropped =
+        lanes_keep(work->touched, softness * (turned * work->inverse_old - after));
+    result->lost_law += 0.5 * (dropped + (spring->memory_velocity - h1_v) * dt); /* (1.18) */
+}
+
+/* The part of a vector in the plane of the contact; returns what lay across it. */
+LANES_INLINE lanes contact_law_flatten(lanes vector[3], const lanes normal[3])
+{
+    const lanes across = contact_law_dot(vector, normal);
+
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++)
+        vector[x] -= across * normal[x];
+    return across;
+}
+
+/* The dashpots' work in the interval that ends now: its velocity times the mean of the forces
+ * at its two ends (1.17).  What acted across the contact is counted as damping; returns what
+ * acted along it. */
+LANES_INLINE lanes contact_law_drag(const struct contact_law_work *work, const lanes v_t[3],
+                                    const struct contact_law_meeting *meeting, lanes dt,
+                                    const lanes tangential[3], lanes *history,
+                                    struct contact_law_result *result)
+{
+    lanes *old = history + CONTACT_LAW_DRAG;
+    const lanes half = 0.5 * dt, pushed = result->normal - work->f_elastic; /* [N] */
+    const lanes across = contact_law_dot(old, meeting->normal) - pushed;
+    const lanes along = contact_law_dot(old, v_t) + contact_law_dot(tangential, v_t);
+
+    result->lost_damping += half * across * work->v_n;
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++)
+        old[x] = lanes_keep(work->touching, tangential[x] - pushed * meeting->normal[x]);
+    return half * along;
+}
+
+/* The tangential spring. */
+LANES_INLINE void contact_law_grip(struct contact_law_work *work, lanes v_t[3],
+                                   const struct contact_law_meeting *meeting,
+                                   const struct contact_law_constants *pair, lanes dt,
+                                   struct contact_law_choice choice, lanes *history,
+                                   struct contact_law_result *result)
+{
+    const lanes taken = contact_law_flatten(history, meeting->normal); /* (1.10) */
+    struct contact_law_spring spring = {.velocity = v_t,
+                                        .memory = history,
+                                        .scale = work->scale,
+                                        .stretch = work->stretch,
+                                        .c = work->c_t,
+                                        .slide = pair->friction * result->normal};
+
+    spring.hold = spring.slide;
+    if (choice.full) {
+        const lanes_mask slid = history[CONTACT_LAW_SLIDING] > lanes_all(0.0);
+        const lanes still = pair->static_friction * result->normal;
+        spring.hold = lanes_where(slid, spring.slide, still); /* (1.14) */
+    }
+    contact_law_stretch(&spring, work->touching, 3, choice.ledger);
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++)
+        result->tangential[x] = -spring.force[x];
+    if (choice.full)
+        history[CONTACT_LAW_SLIDING] =
+            lanes_keep(spring.sliding & work->touching, lanes_all(1.0));
+    if (choice.ledger) {
+        const lanes drag[3] = {spring.force[0] - history[0], spring.force[1] - history[1],
+                               spring.force[2] - history[2]};
+        const lanes dragged = contact_law_drag(work, v_t, meeting, dt, drag, history, result);
+        contact_law_spring_ledger(&spring, work, taken * taken, dragged, 1.0 / pair->tangential,
+                                  dt, result);
+    }
+}
+
+/* Work of a dashpot whose force at the last step is not remembered: late by half a step, which
+ * cancels over a contact but for its ends. */
+LANES_INLINE lanes contact_law_dragged(const struct contact_law_spring *spring, int n, lanes dt)
+{
+    lanes drag[3];
+
+#pragma GCC unroll 3
+    for (int x = 0; x < n; x++)
+        drag[x] = spring->force[x] - spring->memory[x];
+    return contact_law_product(drag, spring->velocity, n) * dt;
+}
+
+/* Resistance to rolling and twisting: springs like the tangential one, that the surfaces' spin
+ * stretches. */
+LANES_INLINE void contact_law_roll(const struct contact_law_work *work,
                                    const struct contact_law_meeting *meeting,
                                    const struct contact_law_constants *pair, lanes dt,
                                    bool ledger, lanes *history,
                                    struct contact_law_result *result)
 {
-    const lanes *n = meeting->normal, one = lanes_all(1.0);
-    const lanes radius_old = history[CONTACT_LAW_RADIUS];
-    const lanes limit = pair->friction * result->normal; /* [N] */
-    lanes h[3], g[3];                                    /* spring; spring and dashpot [N] */
+    const lanes radius = 1.0 / meeting->inverse_radius, zero = lanes_all(0.0); /* R* [m] */
+    const lanes softness = 1.0 / pair->tangential;
+    lanes rolls[3] = {radius * meeting->spin[0], radius * meeting->spin[1],
+                      radius * meeting->spin[2]};                     /* (1.26) [m/s] */
+    const lanes twists = contact_law_flatten(rolls, meeting->normal); /* [m/s] */
+    const lanes taken = contact_law_flatten(history + CONTACT_LAW_ROLLING, meeting->normal);
+    /* A torque of constant size needs no memory: a dashpot that would stop the spin within two
+     * steps, limited. */
+    const lanes_mask forgets = pair->constant_torque;
+    struct contact_law_spring spring = {
+        .velocity = rolls,
+        .memory = history + CONTACT_LAW_ROLLING,
+        .scale = lanes_where(forgets, zero, work->scale),
+        .stretch = lanes_where(forgets, zero, work->stretch),
+        .c = lanes_keep(work->touching,
+                        lanes_where(forgets, 0.2 * work->mass / dt, work->c_t)), /* (1.28) */
+        .slide = pair->rolling * result->normal};                                /* (1.27) */
+    spring.hold = spring.slide;
+    contact_law_stretch(&spring, work->touching, 3, ledger);
+    if (ledger)
+        contact_law_spring_ledger(&spring, work, taken * taken,
+                                  contact_law_dragged(&spring, 3, dt), softness, dt, result);
 
-    work->inverse_old = one / radius_old;
-    work->scale = lanes_where(work->radius < radius_old, work->radius * work->inverse_old, one);
-    work->taken = contact_law_dot(history, n);
-    work->stretch = pair->tangential * dt * work->radius; /* (1.9) */
+    struct contact_law_spring twist = {.velocity = &twists,
+                                       .memory = history + CONTACT_LAW_TWISTING,
+                                       .scale = work->scale,
+                                       .stretch = work->stretch,
+                                       .c = work->c_t,
+                                       .slide = pair->twisting * result->normal};
+    twist.hold = twist.slide;
+    contact_law_stretch(&twist, work->touching, 1, ledger);
+    if (ledger)
+        contact_law_spring_ledger(&twist, work, zero, contact_law_dragged(&twist, 1, dt),
+                                  softness, dt, result);
 #pragma GCC unroll 3
-    for (int x = 0; x < 3; x++) {
-        work->turned[x] = history[x] - work->taken * n[x];                   /* (1.10) */
-        h[x] = work->scale * work->turned[x] + work->stretch * work->v_t[x]; /* (1.11) */
-        h[x] = lanes_keep(work->touching, h[x]);
-        g[x] = h[x] + work->c_t * work->v_t[x]; /* (1.12) */
-    }
-    if (ledger) {
-        work->turned_turned = contact_law_dot(work->turned, work->turned);
-        work->turned_v = contact_law_dot(work->turned, work->v_t);
-        work->v_v = contact_law_dot(work->v_t, work->v_t);
-    }
-
-    /* Spring and dashpot exert no more than friction can hold.  Where no lane slides nothing
-     * would change, so skipping it changes no bit. */
-    const lanes g_squared = contact_law_dot(g, g);
-    work->sliding = g_squared > limit * limit;
-    work->share = one;
-    if (lanes_any(work->sliding)) {
-        const lanes share = limit / lanes_sqrt(g_squared);
-        work->share = lanes_where(work->sliding, share, one);
-#pragma GCC unroll 3
-        for (int x = 0; x < 3; x++) {
-            h[x] *= work->share; /* (1.13) */
-            g[x] *= work->share;
-        }
-    }
-#pragma GCC unroll 3
-    for (int x = 0; x < 3; x++) {
-        result->tangential[x] = -g[x];
-        history[CONTACT_LAW_FORCE + x] = h[x];
-    }
-}
-
-/* Where the work of this contact went in this step, but for what it stores. */
-LANES_INLINE void contact_law_ledger(const struct contact_law_work *work,
-                                     const struct contact_law_meeting *meeting,
-                                     const struct contact_law_constants *pair, lanes dt,
-                                     struct contact_law_result *result)
-{
-    const lanes one = lanes_all(1.0), softness = one / pair->tangential; /* [1/Pa] */
-    const lanes inverse_a = one / work->radius; /* infinite where they do not touch [1/m] */
-    /* Products of v_t and the spring's force, scaled (h1) and stretched (h2). */
-    const lanes h1_h1 = work->scale * work->scale * work->turned_turned;
-    const lanes h1_v = work->scale * work->turned_v;
-    const lanes h2_v = h1_v + work->stretch * work->v_v;
-
-    /* Dashpots.  The tangential velocity comes from the half step to the step by what this
-     * contact's own force does to it: 7/4 dt / m* f. */
-    const lanes half = 1.75 * dt * meeting->inverse_mass;
-    const lanes g_v = work->share * (h2_v + work->c_t * work->v_v);
-    const lanes dashed = work->share * work->c_t * (work->v_v - half * g_v) * dt;
-    const lanes pushed = (work->f_elastic - result->normal) * work->v_now * dt;
-    result->lost_damping = pushed + dashed; /* (1.17) */
-
-    /* The spring that slides: the mean of its force before and after, times how far. */
-    if (lanes_any(work->sliding)) {
-        const lanes h1_h2 = h1_h1 + work->stretch * h1_v;
-        const lanes h2_h2 = h1_h2 + work->stretch * h2_v;
-        const lanes mean = 0.5 * (h1_h2 + work->share * h2_h2);
-        const lanes slid = mean * (one - work->share) * softness * inverse_a;
-        result->lost_friction = lanes_keep(work->sliding, slid + dashed); /* (1.16) */
-        result->lost_damping = lanes_where(work->sliding, pushed, result->lost_damping);
-    }
-
-    /* The memory turned, the stiffness changed, and work was done against the force before. */
-    const lanes turned = work->turned_turned + work->taken * work->taken;
-    const lanes after = lanes_keep(work->touching, h1_h1 * inverse_a);
-    const lanes dropped =
-        lanes_keep(work->touched, softness * (turned * work->inverse_old - after));
-    result->lost_law = 0.5 * (dropped + (work->turned_v - h1_v) * dt); /* (1.18) */
+    for (int x = 0; x < 3; x++)
+        result->torque[x] =
+            -radius * (spring.force[x] + twist.force[0] * meeting->normal[x]); /* (1.29) */
 }
 
 /*
- * The law.  `history` has CONTACT_LAW_HISTORY lanes and is brought to the present.  Where
- * surfaces do not touch, forces are zero and the history becomes +0.0; with the ledger on, what
- * a contact that has just ended still held is counted as lost, so call once more after the end.
+ * The law.  `history` has CONTACT_LAW_LANES lanes, of which those that the choice needs are
+ * read and brought to the present.  Where surfaces do not touch, forces are zero and the
+ * history becomes +0.0; with the ledger on, what a contact that has just ended still held is
+ * counted as lost, so call once more after the end.
  */
 LANES_INLINE void contact_law(const struct contact_law_meeting *meeting,
-                              const struct contact_law_constants *pair, lanes dt, bool ledger,
-                              lanes *history, struct contact_law_result *result)
+                              const struct contact_law_constants *pair, lanes dt,
+                              struct contact_law_choice choice, lanes *history,
+                              struct contact_law_result *result)
 {
-    const lanes *n = meeting->normal, *v = meeting->velocity;
+    const lanes radius_old = history[CONTACT_LAW_RADIUS], one = lanes_all(1.0);
     struct contact_law_work work = {.touching = meeting->overlap > lanes_all(0.0),
-                                    .touched = history[CONTACT_LAW_RADIUS] > lanes_all(0.0),
+                                    .touched = radius_old > lanes_all(0.0),
                                     .mass = 1.0 / meeting->inverse_mass};
+    lanes v_t[3] = {meeting->velocity[0], meeting->velocity[1], meeting->velocity[2]};
 
-    work.radius = lanes_sqrt(meeting->overlap * (1.0 / meeting->inverse_radius)); /* (1.4) */
-    work.v_n = contact_law_dot(v, n);
-#pragma GCC unroll 3
-    for (int x = 0; x < 3; x++)
-        work.v_t[x] = v[x] - work.v_n * n[x];
+    const lanes squared = meeting->overlap * (1.0 / meeting->inverse_radius);
+    work.radius = lanes_sqrt(
+        lanes_where(pair->linear, lanes_keep(work.touching, one), squared)); /* (1.4) */
+    work.v_n = contact_law_flatten(v_t, meeting->normal);
     contact_law_push(&work, meeting, pair, history, result);
-    contact_law_grip(&work, meeting, pair, dt, ledger, history, result);
+    work.inverse_old = one / radius_old;
+    work.scale = lanes_where(work.radius < radius_old, work.radius * work.inverse_old, one);
+    work.stretch = pair->tangential * dt * work.radius; /* (1.9) */
     result->lost_friction = result->lost_damping = result->lost_law = lanes_all(0.0);
-    if (ledger)
-        contact_law_ledger(&work, meeting, pair, dt, result);
+    contact_law_grip(&work, v_t, meeting, pair, dt, choice, history, result);
+    if (choice.full)
+        contact_law_roll(&work, meeting, pair, dt, choice.ledger, history, result);
     history[CONTACT_LAW_RADIUS] = work.radius;
     history[CONTACT_LAW_VELOCITY] = lanes_keep(work.touching, work.v_n);
 }
@@ -226,25 +442,29 @@ LANES_INLINE void contact_law(const struct contact_law_meeting *meeting,
 #if LANES_WIDTH == 1
 /* The law for a single contact. */
 LANES_INLINE void contact_law_scalar(const struct contact_law_meeting *meeting,
-                                     const struct material_pair *pair, double dt, bool ledger,
-                                     double history[CONTACT_LAW_HISTORY],
+                                     const struct material_pair *pair, double dt,
+                                     struct contact_law_choice choice, double *history,
                                      struct contact_law_result *result)
 {
-    const struct contact_law_constants constants = {
-        pair->normal, pair->tangential, pair->damping, pair->damping_ratio, pair->friction};
-    contact_law(meeting, &constants, dt, ledger, history, result);
+    const struct contact_law_constants constants = contact_law_constants_of_one(pair);
+    contact_law(meeting, &constants, dt, choice, history, result);
 }
 
-/* Elastic energy that a touching contact holds: Hertz and the tangential spring [J]. (1.15) */
+/* Elastic energy that a touching contact holds: its springs' [J].  (1.15) */
 LANES_INLINE double contact_law_elastic_energy(double overlap, double inverse_radius,
                                                const struct material_pair *pair,
-                                               const double history[CONTACT_LAW_HISTORY])
+                                               const double history[CONTACT_LAW_LANES])
 {
     if (!(overlap > 0.0))
         return 0.0;
-    const double radius = sqrt(overlap / inverse_radius); /* [m] */
-    return 0.4 * pair->normal * radius * overlap * overlap +
-           contact_law_dot(history, history) / (2.0 * pair->tangential * radius);
+    const bool linear = pair->linear > 0.0;
+    const double radius = linear ? 1.0 : sqrt(overlap / inverse_radius); /* [m] */
+    const double *rolling = history + CONTACT_LAW_ROLLING;
+    const double twisting = history[CONTACT_LAW_TWISTING];
+    const double springs = contact_law_dot(history, history) +
+                           contact_law_dot(rolling, rolling) + twisting * twisting;
+    return (linear ? 0.5 : 0.4) * pair->normal * radius * overlap * overlap +
+           springs / (2.0 * pair->tangential * radius);
 }
 #endif
 

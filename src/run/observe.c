@@ -139,9 +139,10 @@ static int64_t add_pair_energy(const struct simulation *sim, struct exact_sum *s
         const double overlap = a[3] + b[3] - sqrt(dx * dx + dy * dy + dz * dz);
         const double inverse_radius =
             sim->spheres.spin[i].lane[3] + sim->spheres.spin[j].lane[3];
-        double history[CONTACT_LANES];
+        double history[CONTACT_LANES] = {0.0};
         for (int l = 0; l < CONTACT_LANES; l++)
-            history[l] = list->history[l][k];
+            if (list->history[l] != NULL)
+                history[l] = list->history[l][k];
         const int pair = sim->spheres.material[i] * sim->materials.n + sim->spheres.material[j];
         exact_sum_add(sum, contact_law_elastic_energy(overlap, inverse_radius,
                                                       &sim->materials.pairs[pair], history));

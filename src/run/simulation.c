@@ -90,6 +90,7 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     bodies_build(&sim->bodies, job);
     spheres_init(&sim->spheres);
     facet_contacts_init(&sim->facets, sim->bodies.n);
+    contact_set_init(&sim->contacts, sim->materials.full, job->energy_ledger);
     sim->body_allowance = array_allocate((size_t)sim->bodies.n, sizeof *sim->body_allowance);
     boxes_init(&sim->boxes, comm->n_ranks);
     halo_init(&sim->halo, comm);
@@ -106,7 +107,8 @@ static void finish(struct simulation *sim, enum pair_kernel_isa isa)
         sphere_complete(&sim->spheres, i, &sim->materials);
     sim->n_spheres = sim->spheres.n_owned;
     comm_sum_int(sim->comm, &sim->n_spheres, 1);
-    sim->kernel = pair_kernel_choose(isa, one_material(sim), sim->job->energy_ledger);
+    sim->kernel = pair_kernel_choose(isa, one_material(sim), sim->materials.full,
+                                     sim->job->energy_ledger);
     sim->half_buffer = choose_half_buffer(sim);
     runtime_init(&sim->runtime, sim->step);
     bodies_place(&sim->bodies, sim->step, sim->dt);
@@ -200,7 +202,9 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
                        enum pair_kernel_isa isa, const char *checkpoint_path)
 {
     begin(sim, comm, job);
-    struct checkpoint checkpoint = {.spheres = &sim->spheres};
+    struct checkpoint checkpoint = {.spheres = &sim->spheres,
+                                    .full = sim->materials.full,
+                                    .ledger = sim->job->energy_ledger};
     int status = checkpoint_read(comm, checkpoint_path, &checkpoint);
     const bool fits = status == REPORT_FINISHED && fits_job(sim, &checkpoint) &&
                       restore_monitors(sim, &checkpoint) == REPORT_FINISHED;
@@ -287,8 +291,12 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
     struct facet_contact_record *facets = NULL;
     struct observe_monitor *totals;
     int capacity = 0;
-    struct checkpoint checkpoint = {
-        .step = sim->step, .dt = sim->dt, .next_id = sim->next_id, .spheres = &sim->spheres};
+    struct checkpoint checkpoint = {.step = sim->step,
+                                    .dt = sim->dt,
+                                    .next_id = sim->next_id,
+                                    .spheres = &sim->spheres,
+                                    .full = sim->materials.full,
+                                    .ledger = sim->job->energy_ledger};
     checkpoint.title = array_string(sim->job->title);
     checkpoint.job_text = array_string(job_text);
     checkpoint.n_contacts =

@@ -77,7 +77,7 @@ static int compare_facet_contacts(const void *a, const void *b)
 }
 
 /* What a contact remembers, from `offset` on. */
-static void add_history(struct table *table, size_t offset)
+static void add_history(struct table *table, size_t offset, bool full, bool ledger)
 {
     static const struct field force = {
         "tangential_force", "N", "as felt by the surface of the second partner",
@@ -90,6 +90,23 @@ static void add_history(struct table *table, size_t offset)
     table_add_column(table, &force, offset);
     table_add_column(table, &radius, offset + CONTACT_RADIUS_LANE * sizeof(double));
     table_add_column(table, &velocity, offset + (CONTACT_RADIUS_LANE + 1) * sizeof(double));
+    static const struct field drag = {
+        "dashpot_force", "N", "of both dashpots, as felt by the second partner",
+        FIELD_DOUBLE,    3,   0};
+    if (ledger)
+        table_add_column(table, &drag, offset + CONTACT_DRAG_LANE * sizeof(double));
+    if (!full)
+        return;
+    static const struct field rolling = {
+        "rolling_force", "N", "of the rolling spring, as felt by the second partner",
+        FIELD_DOUBLE,    3,   0};
+    static const struct field twisting = {
+        "twisting_force", "N", "of the twisting spring, along the normal", FIELD_DOUBLE, 1, 0};
+    static const struct field sliding = {"sliding",    "1", "1 where it slid in the last step",
+                                         FIELD_DOUBLE, 1,   0};
+    table_add_column(table, &rolling, offset + CONTACT_ROLLING_LANE * sizeof(double));
+    table_add_column(table, &twisting, offset + CONTACT_TWISTING_LANE * sizeof(double));
+    table_add_column(table, &sliding, offset + (CONTACT_TWISTING_LANE + 1) * sizeof(double));
 }
 
 static void describe_spheres(struct table *table)
@@ -103,7 +120,7 @@ static void describe_spheres(struct table *table)
     }
 }
 
-static void describe_contacts(struct table *table)
+static void describe_contacts(struct table *table, bool full, bool ledger)
 {
     static const struct field first = {"first_id",  "1", "sphere of the lower id",
                                        FIELD_INT64, 1,   0};
@@ -112,10 +129,10 @@ static void describe_contacts(struct table *table)
     table_init(table, "contacts", sizeof(struct contact_record), compare_contacts);
     table_add_column(table, &first, offsetof(struct contact_record, first_id));
     table_add_column(table, &second, offsetof(struct contact_record, second_id));
-    add_history(table, offsetof(struct contact_record, history));
+    add_history(table, offsetof(struct contact_record, history), full, ledger);
 }
 
-static void describe_facet_contacts(struct table *table)
+static void describe_facet_contacts(struct table *table, bool full, bool ledger)
 {
     static const struct field id = {"id", "1", "sphere", FIELD_INT64, 1, 0};
     static const struct field body = {
@@ -127,14 +144,14 @@ static void describe_facet_contacts(struct table *table)
     table_add_column(table, &id, offsetof(struct facet_contact_record, id));
     table_add_column(table, &body, offsetof(struct facet_contact_record, body));
     table_add_column(table, &feature, offsetof(struct facet_contact_record, feature));
-    add_history(table, offsetof(struct facet_contact_record, history));
+    add_history(table, offsetof(struct facet_contact_record, history), full, ledger);
 }
 
-static void tables_init(struct table tables[N_TABLES])
+static void tables_init(struct table tables[N_TABLES], bool full, bool ledger)
 {
     describe_spheres(&tables[SPHERES]);
-    describe_contacts(&tables[CONTACTS]);
-    describe_facet_contacts(&tables[FACET_CONTACTS]);
+    describe_contacts(&tables[CONTACTS], full, ledger);
+    describe_facet_contacts(&tables[FACET_CONTACTS], full, ledger);
 }
 
 static void tables_clear(struct table tables[N_TABLES])
@@ -171,7 +188,7 @@ static void copy_records(struct table *table, int n, const void *records)
 static void collect(struct table tables[N_TABLES], const struct comm *comm,
                     const struct checkpoint *checkpoint)
 {
-    tables_init(tables);
+    tables_init(tables, checkpoint->full, checkpoint->ledger);
     struct table *spheres = &tables[SPHERES];
     spheres->n = checkpoint->spheres->n_owned;
     spheres->records = array_allocate((size_t)spheres->n, spheres->record_size);
@@ -598,7 +615,7 @@ static char *read_file(const struct comm *comm, const char *path, struct checkpo
 int checkpoint_read(const struct comm *comm, const char *path, struct checkpoint *checkpoint)
 {
     struct table tables[N_TABLES];
-    tables_init(tables);
+    tables_init(tables, checkpoint->full, checkpoint->ledger);
     char *why = read_file(comm, path, checkpoint, tables);
     tables_clear(tables);
     if (why == NULL)

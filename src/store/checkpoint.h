@@ -8,10 +8,11 @@
  *                    text as used
  *   /spheres/NAME    one data set per saved field of sphere_fields[] (n or n x width)
  *   /contacts/       first_id, second_id, tangential_force (n x 3), contact_radius,
- *                    normal_velocity; touching contacts, first_id < second_id, sorted by
- *                    (first_id, second_id)
- *   /facet_contacts/ id, body, feature, tangential_force, contact_radius, normal_velocity;
- *                    sorted
+ *                    normal_velocity; with the ledger dashpot_force (n x 3); of a job with
+ *                    rolling, twisting or static friction rolling_force (n x 3),
+ *                    twisting_force, sliding; touching contacts, first_id < second_id, sorted
+ *                    by (first_id, second_id)
+ *   /facet_contacts/ id, body, feature, the same of their history; sorted
  *   /monitors/       names (one a line), sums (n x 5 int64: struct exact_sum as totals)
  *   /checksums/      under the same paths: CRC-32 (as zlib's) of each block of 256 rows; job,
  *                    names and sums have theirs as attribute `checksum`
@@ -47,6 +48,7 @@ struct checkpoint {
     char *title;
     char *job_text;          /* the job as used (job_write) */
     struct spheres *spheres; /* owned ones are state */
+    bool full, ledger;       /* which lanes of history there are: set before reading, too */
     int n_contacts;          /* records held here: see below */
     struct contact_record *contacts;
     int n_facet_contacts;

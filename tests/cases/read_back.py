@@ -35,6 +35,7 @@ HISTORY = {
     "tangential_force": ("N", "<f8", 3),
     "contact_radius": ("m", "<f8", 1),
     "normal_velocity": ("m/s", "<f8", 1),
+    "dashpot_force": ("N", "<f8", 3),
 }
 TABLES = {
     "spheres": SPHERES,

@@ -72,6 +72,29 @@ static inline void scene_fill_pairs(struct scene *scene)
     }
 }
 
+/* Pairs of three materials: one linear, one whose rolling friction has no spring. */
+static inline struct material_pair scene_pair(int a, int b)
+{
+    struct material_pair pair = {
+        .normal = 1e7 * (1 + a + b),
+        .tangential = 0.9e7 * (1 + a + b),
+        .damping = restitution_damping(0.9 - 0.2 * (a + b)) * 8e3,
+        .damping_ratio = 1.1,
+        .friction = 0.1 + 0.3 * a * b,
+        .static_friction = 0.15 + 0.4 * a * b,
+        .rolling = 0.05 * (a + b),
+        .twisting = 0.03 * (a + b),
+        .constant_torque = a + b == 3 ? 1.0 : 0.0,
+    };
+    if (a + b == 2) {
+        pair.linear = 1.0;
+        pair.normal = 4e3;
+        pair.tangential = 3e3;
+        pair.damping = restitution_damping(0.5) * 2.0 * sqrt(4e3);
+    }
+    return pair;
+}
+
 static inline void scene_fill(struct scene *scene, uint64_t seed)
 {
     memset(scene, 0, sizeof *scene);
@@ -79,9 +102,7 @@ static inline void scene_fill(struct scene *scene, uint64_t seed)
     scene->dt = 2e-5;
     for (int a = 0; a < SCENE_MATERIALS; a++)
         for (int b = 0; b < SCENE_MATERIALS; b++)
-            scene->pairs[a * SCENE_MATERIALS + b] = (struct material_pair){
-                1e7 * (1 + a + b), 0.9e7 * (1 + a + b),
-                restitution_damping(0.9 - 0.2 * (a + b)) * 8e3, 1.1, 0.1 + 0.3 * a * b};
+            scene->pairs[a * SCENE_MATERIALS + b] = scene_pair(a, b);
     for (int i = 0; i < SCENE_SPHERES + 2; i++)
         scene_fill_row(scene, i);
     scene->motion[SCENE_SPHERES].lane[0] = 1e3;
@@ -89,8 +110,7 @@ static inline void scene_fill(struct scene *scene, uint64_t seed)
     scene_fill_pairs(scene);
 }
 
-static inline void scene_apply(struct scene *scene,
-                               void (*kernel)(struct pair_kernel_work *work))
+static inline struct pair_kernel_work scene_work(struct scene *scene)
 {
     struct pair_kernel_work work = {
         .n_padded = scene->n_padded,
@@ -107,6 +127,13 @@ static inline void scene_apply(struct scene *scene,
     };
     for (int lane = 0; lane < CONTACT_LANES; lane++)
         work.history[lane] = scene->history[lane];
+    return work;
+}
+
+static inline void scene_apply(struct scene *scene,
+                               void (*kernel)(struct pair_kernel_work *work))
+{
+    struct pair_kernel_work work = scene_work(scene);
     kernel(&work);
     scene->overlap_max = work.overlap_max;
 }

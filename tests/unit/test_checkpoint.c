@@ -87,6 +87,7 @@ static void build(struct checkpoint *checkpoint, struct spheres *spheres,
         (struct checkpoint){.step = 1234, .dt = 1e-5, .next_id = N_IDS, .spheres = spheres};
     checkpoint->title = array_string("A heap of \xc3\xa9tain");
     checkpoint->job_text = array_string("title: test\ntime: {end: 1}\n");
+    checkpoint->full = checkpoint->ledger = true;
     checkpoint->contacts = array_allocate(2 * N_IDS, sizeof *checkpoint->contacts);
     checkpoint->facet_contacts = array_allocate(2 * N_IDS, sizeof *checkpoint->facet_contacts);
     for (int64_t id = 0; id < N_IDS; id++) {
@@ -184,7 +185,7 @@ static void put_bytes(const char *path, const unsigned char *bytes, size_t n)
 static int read_alone(const char *path, bool *same)
 {
     const struct comm self = alone();
-    struct checkpoint was, is = {0};
+    struct checkpoint was, is = {.full = true, .ledger = true};
     struct spheres spheres_was, spheres_is;
     build(&was, &spheres_was, &self);
     spheres_init(&spheres_is);
@@ -281,7 +282,7 @@ TEST(state_returns)
     spheres_init(&spheres);
     spheres_init(&expected);
     spheres_reserve(&expected, 1);
-    struct checkpoint checkpoint = {.spheres = &spheres};
+    struct checkpoint checkpoint = {.spheres = &spheres, .full = true, .ledger = true};
     EXPECT(checkpoint_read(&comm, path, &checkpoint) == REPORT_FINISHED);
     EXPECT(checkpoint.step == 1234 && checkpoint.dt == 1e-5 && checkpoint.next_id == N_IDS);
     EXPECT_STRING(checkpoint.job_text, "title: test\ntime: {end: 1}\n");
@@ -310,7 +311,7 @@ TEST(monitors_are_totals)
     EXPECT(write_state(&comm, path) == REPORT_FINISHED);
     struct spheres spheres, all_spheres;
     spheres_init(&spheres);
-    struct checkpoint checkpoint = {.spheres = &spheres}, all;
+    struct checkpoint checkpoint = {.spheres = &spheres, .full = true, .ledger = true}, all;
     build(&all, &all_spheres, &self);
     EXPECT(checkpoint_read(&comm, path, &checkpoint) == REPORT_FINISHED);
     EXPECT(checkpoint.n_monitors == N_MONITORS);
@@ -351,10 +352,14 @@ TEST(nothing_at_all)
     struct spheres spheres;
     spheres_init(&spheres);
     char title[] = "", job[] = "";
-    struct checkpoint checkpoint = {
-        .dt = 1.0, .spheres = &spheres, .title = title, .job_text = job};
+    struct checkpoint checkpoint = {.dt = 1.0,
+                                    .spheres = &spheres,
+                                    .full = true,
+                                    .ledger = true,
+                                    .title = title,
+                                    .job_text = job};
     EXPECT(checkpoint_write(&comm, path, &checkpoint) == REPORT_FINISHED);
-    struct checkpoint read = {.spheres = &spheres};
+    struct checkpoint read = {.spheres = &spheres, .full = true, .ledger = true};
     EXPECT(checkpoint_read(&comm, path, &read) == REPORT_FINISHED);
     EXPECT(spheres.n_owned == 0 && read.n_contacts == 0 && read.n_monitors == 0);
     EXPECT_STRING(read.job_text, "");
@@ -367,7 +372,7 @@ static void expect_refused(const struct comm *comm, const char *path)
 {
     struct spheres spheres;
     spheres_init(&spheres);
-    struct checkpoint checkpoint = {.spheres = &spheres};
+    struct checkpoint checkpoint = {.spheres = &spheres, .full = true, .ledger = true};
     report_init(false);
     EXPECT(checkpoint_read(comm, path, &checkpoint) == REPORT_STORAGE);
     report_init(comm->rank == 0);

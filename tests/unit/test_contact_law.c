@@ -52,9 +52,11 @@ static struct material_pair pair_of(const struct impact *impact)
     const double e_star = m->young / (partners * (1.0 - m->poisson * m->poisson));
     const double g_star = m->young / (2.0 * partners * (1.0 + m->poisson) * (2.0 - m->poisson));
     const double beta = restitution_damping(impact->restitution);
-    return (struct material_pair){4.0 / 3.0 * e_star, 8.0 * g_star,
-                                  2.0 * sqrt(5.0 / 6.0) * beta * sqrt(2.0 * e_star),
-                                  sqrt(4.0 * g_star / e_star), impact->friction};
+    return (struct material_pair){.normal = 4.0 / 3.0 * e_star,
+                                  .tangential = 8.0 * g_star,
+                                  .damping = 2.0 * sqrt(5.0 / 6.0) * beta * sqrt(2.0 * e_star),
+                                  .damping_ratio = sqrt(4.0 * g_star / e_star),
+                                  .friction = impact->friction};
 }
 
 /* How long an elastic impact lasts (THEORY.md (1.25)). */
@@ -116,7 +118,7 @@ static struct outcome fly(const struct impact *impact)
     const double inertia = 0.4 * mass * r * r;
     const struct material_pair pair = pair_of(impact);
     const double dt = hertz_duration(impact, &pair, mass) / impact->steps;
-    double history[CONTACT_LAW_HISTORY] = {0};
+    double history[CONTACT_LAW_LANES] = {0};
     struct ball first = {{0, 0, 0}, {0, 0, 0}, {0, 0, 0}};
     struct ball second = {{0, 0, 2.0 * r + impact->phase * dt * impact->v_n},
                           {impact->v_t, 0, -impact->v_n},
@@ -130,7 +132,8 @@ static struct outcome fly(const struct impact *impact)
         double arm;
         const struct contact_law_meeting meeting =
             meeting_of(impact, &first, &second, 1.0 / mass, &arm, &n);
-        contact_law_scalar(&meeting, &pair, dt, true, history, &f);
+        contact_law_scalar(&meeting, &pair, dt, (struct contact_law_choice){.ledger = true},
+                           history, &f);
         out.friction += f.lost_friction;
         out.damping += f.lost_damping;
         out.law += f.lost_law;
@@ -167,7 +170,7 @@ static struct outcome fly(const struct impact *impact)
     out.spin = second.w.y;
     out.after = kinetic(&second, mass, inertia) + kinetic(&first, mass, inertia);
     out.history_is_zero = true;
-    for (int k = 0; k < CONTACT_LAW_HISTORY; k++)
+    for (int k = 0; k < CONTACT_LAW_LANES; k++)
         if (history[k] != 0.0 || signbit(history[k]))
             out.history_is_zero = false;
     return out;
@@ -336,17 +339,21 @@ TEST(elastic_energy_is_what_motion_lacks)
 TEST(apart_nothing_remains)
 {
     const struct contact_law_meeting meeting = {
-        {0.6, 0.0, -0.8}, {-1.0, 2.0, 3.0}, 0.0, 200.0, 1000.0};
+        {0.6, 0.0, -0.8}, {-1.0, 2.0, 3.0}, 0.0, 200.0, 1000.0, {70.0, -80.0, 90.0}};
     const struct impact impact = {glass, false, 0.01, 0.5, 0.5, 1, 0, 0, 1, 0};
-    const struct material_pair pair = pair_of(&impact);
-    double history[CONTACT_LAW_HISTORY] = {-3.0, -2.0, 1.0, 1e-4, -1.0};
+    struct material_pair pair = pair_of(&impact);
+    double history[CONTACT_LAW_LANES] = {-3.0, -2.0, 1.0, 1e-4, -1.0,
+                                         5.0,  -6.0, 7.0, -8.0, 1.0};
     struct contact_law_result result;
 
-    contact_law_scalar(&meeting, &pair, 1e-6, false, history, &result);
+    pair.rolling = pair.twisting = 0.1;
+    contact_law_scalar(&meeting, &pair, 1e-6,
+                       (struct contact_law_choice){.full = true, .ledger = true}, history,
+                       &result);
     EXPECT(result.normal == 0.0);
     for (int x = 0; x < 3; x++)
-        EXPECT(result.tangential[x] == 0.0);
-    for (int k = 0; k < CONTACT_LAW_HISTORY; k++)
+        EXPECT(result.tangential[x] == 0.0 && result.torque[x] == 0.0);
+    for (int k = 0; k < CONTACT_LAW_LANES; k++)
         EXPECT(history[k] == 0.0 && !signbit(history[k]));
 }
 
@@ -355,7 +362,9 @@ TEST(apart_nothing_remains)
 TEST(materials_make_pairs)
 {
     struct job_material list[] = {{NULL, 2800.0, 48e9, 0.20}, {NULL, 7000.0, 100e9, 0.25}};
-    struct job_pair asked[] = {{0, 0, 0.3, 0.5}, {0, 1, 0.4, 1.0}};
+    struct job_pair asked[] = {
+        {.a = 0, .b = 0, .friction = 0.3, .restitution = 0.5},
+        {.a = 0, .b = 1, .friction = 0.4, .restitution = 1.0, .rolling_friction = 0.1}};
     const struct job job = {.n_materials = 2, .materials = list, .n_pairs = 2, .pairs = asked};
     struct materials materials;
     materials_build(&materials, &job);

@@ -41,7 +41,8 @@ static void scene_build(struct scene *scene, struct job_material material, doubl
                         double restitution, int n_bodies, struct job_body *asked, int n_spheres,
                         double radius)
 {
-    struct job_pair pair = {0, 0, friction, restitution};
+    struct job_pair pair = {
+        .friction = friction, .static_friction = friction, .restitution = restitution};
     const struct job job = {.n_materials = 1,
                             .materials = &material,
                             .n_pairs = 1,

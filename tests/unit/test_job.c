@@ -132,7 +132,8 @@ TEST(all_mistakes_are_listed_at_once)
     EXPECT(has_mistake(3, 56,
                        "materials.ore.poisson is '0.5'; a number above -1 and below 0.5 is "
                        "expected"));
-    EXPECT(has_mistake(5, 8, "contact.law is 'hertz'; hertz-mindlin is expected"));
+    EXPECT(
+        has_mistake(5, 8, "contact.law is 'hertz'; one of hertz-mindlin, linear is expected"));
     EXPECT(has_mistake(
         6, 27, "contact.pairs.0.between: there is no material 'oer'; 'ore' is expected"));
     EXPECT(has_mistake(6, 43,

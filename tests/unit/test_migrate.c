@@ -57,7 +57,7 @@ static bool touches(const struct run *run, int64_t a, int64_t b)
 static double memory_of(int64_t lower, int64_t higher, int lane)
 {
     const double value = 1.0 + (double)(lower * N + higher) + 0.1 * lane;
-    return lane < CONTACT_RADIUS_LANE && higher % 2 == 0 ? -value : value;
+    return contact_lane_turns(lane) && higher % 2 == 0 ? -value : value;
 }
 
 static bool holds_facet(int64_t id)
@@ -162,6 +162,7 @@ static void begin(struct run *run)
     halo_init(&run->halo, &run->comm);
     migrate_init(migrate, &run->comm);
     facet_contacts_init(&run->facets, 1);
+    contact_set_init(&run->contacts, true, true);
     place(run, 0);
     for (int id = 0; id < N; id++)
         run->cell[id] = id * 7919 % 23;

@@ -31,12 +31,13 @@ static struct contact_law_meeting meeting_of(const double *a, const double *b,
     for (int x = 0; x < 3; x++) {
         const int y = (x + 1) % 3, z = (x + 2) % 3;
         meeting.velocity[x] = (b[4 + x] - a[4 + x]) - (s[y] * n[z] - s[z] * n[y]);
+        meeting.spin[x] = spin_b[4 + x] - spin_a[4 + x];
     }
     return meeting;
 }
 
 static void apply_one(struct pair_kernel_work *work, int k, const struct material_pair *pair,
-                      bool ledger)
+                      struct contact_law_choice choice)
 {
     const int i = work->first[k], j = work->second[k];
     const double *a = work->motion[i].lane, *b = work->motion[j].lane;
@@ -49,7 +50,7 @@ static void apply_one(struct pair_kernel_work *work, int k, const struct materia
 
     for (int lane = 0; lane < CONTACT_LANES; lane++)
         history[lane] = work->history[lane][k];
-    contact_law_scalar(&meeting, pair, work->dt, ledger, history, &result);
+    contact_law_scalar(&meeting, pair, work->dt, choice, history, &result);
     for (int lane = 0; lane < CONTACT_LANES; lane++)
         work->history[lane][k] = history[lane];
     for (int x = 0; x < 3; x++) {
@@ -58,10 +59,11 @@ static void apply_one(struct pair_kernel_work *work, int k, const struct materia
         const double force = result.tangential[x] + result.normal * n[x];
         f[x] += -force;
         g[x] += force;
-        f[4 + x] += (0.5 * (sum - difference) - half) * turn;
-        g[4 + x] += (0.5 * (sum + difference) - half) * turn;
+        const double torque = choice.full ? result.torque[x] : 0.0;
+        f[4 + x] += (0.5 * (sum - difference) - half) * turn - torque;
+        g[4 + x] += (0.5 * (sum + difference) - half) * turn + torque;
     }
-    if (ledger) {
+    if (choice.ledger) {
         f[3] += 0.5 * result.lost_friction;
         g[3] += 0.5 * result.lost_friction;
         f[7] += 0.5 * result.lost_damping;
@@ -71,39 +73,20 @@ static void apply_one(struct pair_kernel_work *work, int k, const struct materia
     work->overlap_max = 0.5 * relative > work->overlap_max ? 0.5 * relative : work->overlap_max;
 }
 
-static void apply_all(struct pair_kernel_work *work, bool uniform, bool ledger)
+static void apply_all(struct pair_kernel_work *work, bool uniform,
+                      struct contact_law_choice choice)
 {
     work->overlap_max = 0.0;
     for (int k = 0; k < work->n_padded; k++) {
         const int a = work->material[work->first[uniform ? 0 : k]];
         const int b = work->material[work->second[uniform ? 0 : k]];
-        apply_one(work, k, &work->pairs[a * work->n_materials + b], ledger);
+        apply_one(work, k, &work->pairs[a * work->n_materials + b], choice);
     }
 }
 
-static void apply_mixed(struct pair_kernel_work *work)
-{
-    apply_all(work, false, false);
-}
-static void apply_mixed_ledger(struct pair_kernel_work *work)
-{
-    apply_all(work, false, true);
-}
-static void apply_uniform(struct pair_kernel_work *work)
-{
-    apply_all(work, true, false);
-}
-static void apply_uniform_ledger(struct pair_kernel_work *work)
-{
-    apply_all(work, true, true);
-}
-
-static void (*const references[2][2])(struct pair_kernel_work *) = {
-    {apply_mixed, apply_mixed_ledger}, {apply_uniform, apply_uniform_ledger}};
-
 /* What a scene must contain for the comparison to mean something. */
 struct seen {
-    int touching, apart, new, ended, sliding;
+    int touching, apart, new, ended, sliding, rolling, slid;
 };
 
 static void look(const struct scene *before, const struct scene *after, struct seen *seen)
@@ -115,14 +98,18 @@ static void look(const struct scene *before, const struct scene *after, struct s
         seen->apart += !is;
         seen->new += is && !was;
         seen->ended += was && !is;
+        seen->rolling += after->history[CONTACT_ROLLING_LANE][k] != 0.0;
+        seen->slid += after->history[CONTACT_LAW_SLIDING][k] > 0.0;
     }
     for (int i = 0; i < SCENE_SPHERES; i++)
         seen->sliding += after->force[i].lane[3] > 0.0;
 }
 
-static void compare(enum pair_kernel_isa isa, bool uniform, bool ledger, struct seen *seen)
+static void compare(enum pair_kernel_isa isa, bool uniform, struct contact_law_choice choice,
+                    struct seen *seen)
 {
-    const struct pair_kernel kernel = pair_kernel_choose(isa, uniform, ledger);
+    const struct pair_kernel kernel =
+        pair_kernel_choose(isa, uniform, choice.full, choice.ledger);
     static struct scene expected, got, before;
 
     scene_fill(&expected, 17);
@@ -132,7 +119,9 @@ static void compare(enum pair_kernel_isa isa, bool uniform, bool ledger, struct 
     memcpy(&got, &expected, sizeof got);
     for (int step = 0; step < STEPS; step++) {
         memcpy(&before, &got, sizeof before);
-        scene_apply(&expected, references[uniform][ledger]);
+        struct pair_kernel_work work = scene_work(&expected);
+        apply_all(&work, uniform, choice);
+        expected.overlap_max = work.overlap_max;
         scene_apply(&got, kernel.apply);
         if (scene_difference(&expected, &got) != NULL)
             CHECK_FAIL("%s: step %d: %s differs", pair_kernel_isa_name(isa), step,
@@ -149,10 +138,13 @@ TEST(all_instruction_sets_give_the_bits_of_single_contacts)
         struct seen seen = {0};
         if (!pair_kernel_isa_runs((enum pair_kernel_isa)isa))
             continue;
-        for (int choice = 0; choice < 4; choice++)
-            compare((enum pair_kernel_isa)isa, choice & 1, choice & 2, &seen);
+        for (int choice = 0; choice < 8; choice++)
+            compare((enum pair_kernel_isa)isa, choice & 1,
+                    (struct contact_law_choice){.full = choice & 2, .ledger = choice & 4},
+                    &seen);
         EXPECT(seen.touching > 1000 && seen.apart > 1000);
         EXPECT(seen.new > 100 && seen.ended > 100 && seen.sliding > 1000);
+        EXPECT(seen.rolling > 1000 && seen.slid > 100);
     }
 }
 
@@ -160,8 +152,8 @@ TEST(all_instruction_sets_give_the_bits_of_single_contacts)
 TEST(ledger_changes_no_force)
 {
     static struct scene with, without;
-    const struct pair_kernel ledger = pair_kernel_choose(PAIR_KERNEL_AUTO, false, true);
-    const struct pair_kernel plain = pair_kernel_choose(PAIR_KERNEL_AUTO, false, false);
+    const struct pair_kernel ledger = pair_kernel_choose(PAIR_KERNEL_AUTO, false, true, true);
+    const struct pair_kernel plain = pair_kernel_choose(PAIR_KERNEL_AUTO, false, true, false);
 
     scene_fill(&with, 3);
     scene_fill(&without, 3);
@@ -170,7 +162,10 @@ TEST(ledger_changes_no_force)
         scene_apply(&without, plain.apply);
         scene_move(&with);
         scene_move(&without);
-        EXPECT(memcmp(with.history, without.history, sizeof with.history) == 0);
+        for (int lane = 0; lane < CONTACT_LANES; lane++)
+            EXPECT(!contact_lane_used(lane, true, false) ||
+                   memcmp(with.history[lane], without.history[lane],
+                          sizeof with.history[lane]) == 0);
         EXPECT(memcmp(with.motion, without.motion, sizeof with.motion) == 0);
         EXPECT(memcmp(with.spin, without.spin, sizeof with.spin) == 0);
     }
@@ -180,7 +175,7 @@ TEST(ledger_changes_no_force)
 TEST(antisymmetric)
 {
     static struct scene one, other;
-    const struct pair_kernel kernel = pair_kernel_choose(PAIR_KERNEL_AUTO, false, true);
+    const struct pair_kernel kernel = pair_kernel_choose(PAIR_KERNEL_AUTO, false, true, true);
 
     scene_fill(&one, 5);
     one.n = 1;
@@ -217,8 +212,10 @@ TEST(apart_nothing_is_written_but_plus_zero)
             scene.motion[i].lane[0] += (i % 2 ? -1.0 : 1.0) * i; /* far apart, on both sides */
         for (int k = 0; k < scene.n; k++)
             for (int lane = 0; lane < CONTACT_LANES; lane++)
-                scene.history[lane][k] = lane == CONTACT_RADIUS_LANE ? 1e-4 : -1.0 - k;
-        scene_apply(&scene, pair_kernel_choose((enum pair_kernel_isa)isa, false, false).apply);
+                if (contact_lane_used(lane, true, false))
+                    scene.history[lane][k] = lane == CONTACT_RADIUS_LANE ? 1e-4 : -1.0 - k;
+        scene_apply(&scene,
+                    pair_kernel_choose((enum pair_kernel_isa)isa, false, true, false).apply);
         EXPECT(memcmp(scene.force, nothing, sizeof scene.force) == 0);
         for (int lane = 0; lane < CONTACT_LANES; lane++)
             for (int k = 0; k < scene.n_padded; k++)
@@ -233,7 +230,7 @@ TEST(no_pairs_is_fine)
     scene_fill(&scene, 1);
     scene.n_padded = 0;
     scene.overlap_max = 1.0;
-    scene_apply(&scene, pair_kernel_choose(PAIR_KERNEL_AUTO, true, true).apply);
+    scene_apply(&scene, pair_kernel_choose(PAIR_KERNEL_AUTO, true, true, true).apply);
     EXPECT(scene.overlap_max == 0.0);
 }
 
@@ -242,7 +239,7 @@ TEST(instruction_sets_have_names)
     EXPECT_STRING(pair_kernel_isa_name(PAIR_KERNEL_AUTO), "auto");
     EXPECT_STRING(pair_kernel_isa_name(PAIR_KERNEL_V3), "v3");
     EXPECT(pair_kernel_isa_runs(PAIR_KERNEL_AUTO));
-    EXPECT(pair_kernel_choose(PAIR_KERNEL_AUTO, true, true).isa != PAIR_KERNEL_AUTO);
+    EXPECT(pair_kernel_choose(PAIR_KERNEL_AUTO, true, true, true).isa != PAIR_KERNEL_AUTO);
 }
 
 int main(int argc, char **argv)

@@ -16,16 +16,17 @@ TEST(eight_lanes_give_the_same_bits)
 {
     static struct scene expected, got;
 
-    for (int choice = 0; choice < 4; choice++) {
-        const bool uniform = choice & 1, ledger = choice & 2;
-        const struct pair_kernel kernel = pair_kernel_choose(PAIR_KERNEL_AUTO, uniform, ledger);
+    for (int choice = 0; choice < 8; choice++) {
+        const bool uniform = choice & 1, full = choice & 2, ledger = choice & 4;
+        const struct pair_kernel kernel =
+            pair_kernel_choose(PAIR_KERNEL_AUTO, uniform, full, ledger);
         scene_fill(&expected, 29);
         if (uniform)
             memset(expected.material, 0, sizeof expected.material);
         memcpy(&got, &expected, sizeof got);
         for (int step = 0; step < 40; step++) {
             scene_apply(&expected, kernel.apply);
-            scene_apply(&got, wide_blocks().apply[uniform][ledger]);
+            scene_apply(&got, wide_blocks().apply[uniform][full][ledger]);
             if (scene_difference(&expected, &got) != NULL)
                 CHECK_FAIL("step %d: %s differs", step, scene_difference(&expected, &got));
             scene_move(&expected);

@@ -121,13 +121,20 @@ static void reference_end(struct reference *r)
     free(r->history);
 }
 
+/* Does a lane change its sign with the side?  What no law fills stays +0. */
+static bool turns(const struct reference *r, int lane)
+{
+    return contact_lane_turns(lane) &&
+           contact_lane_used(lane, r->materials.full, r->job->energy_ledger);
+}
+
 static void load_history(const struct reference *r, int i, int j, double *history)
 {
     const int n = r->spheres.n_all, lower = i < j ? i : j, higher = i < j ? j : i;
     const double *h = r->history[lower * n + higher];
     const bool turn = i > j && h[CONTACT_LAW_RADIUS] > 0.0;
     for (int l = 0; l < CONTACT_LANES; l++)
-        history[l] = turn && l < 3 ? -h[l] : h[l];
+        history[l] = turn && turns(r, l) ? -h[l] : h[l];
 }
 
 static void save_history(struct reference *r, int i, int j, const double *history)
@@ -136,15 +143,16 @@ static void save_history(struct reference *r, int i, int j, const double *histor
     double *h = r->history[lower * n + higher];
     const bool turn = i > j && history[CONTACT_LAW_RADIUS] > 0.0;
     for (int l = 0; l < CONTACT_LANES; l++)
-        h[l] = turn && l < 3 ? -history[l] : history[l];
+        h[l] = turn && turns(r, l) ? -history[l] : history[l];
 }
 
 static void add_load(double *row, double sign, const double *force, double arm,
-                     const double *turn, const struct contact_law_result *result, bool ledger)
+                     const double *turn, const struct contact_law_result *result, bool full,
+                     bool ledger)
 {
     for (int k = 0; k < 3; k++) {
         row[k] += sign * force[k];
-        row[4 + k] += arm * turn[k];
+        row[4 + k] += full ? arm * turn[k] + sign * result->torque[k] : arm * turn[k];
     }
     if (ledger) {
         row[3] += 0.5 * result->lost_friction;
@@ -173,6 +181,7 @@ static void reference_pair(struct reference *r, int i, int j)
         .overlap = overlap,
         .inverse_radius = 1.0 / a[3] + 1.0 / b[3],
         .inverse_mass = p[7] + q[7],
+        .spin = {q[4] - p[4], q[5] - p[5], q[6] - p[6]},
     };
     const struct material_pair *pair =
         &r->materials.pairs[r->spheres.material[i] * r->materials.n + r->spheres.material[j]];
@@ -180,7 +189,9 @@ static void reference_pair(struct reference *r, int i, int j)
     struct contact_law_result result;
     double history[CONTACT_LANES];
     load_history(r, i, j, history);
-    contact_law_scalar(&meeting, pair, r->job->time.step, ledger, history, &result);
+    contact_law_scalar(&meeting, pair, r->job->time.step,
+                       (struct contact_law_choice){.full = r->materials.full, .ledger = ledger},
+                       history, &result);
     save_history(r, i, j, history);
 
     const double *f = result.tangential;
@@ -190,9 +201,9 @@ static void reference_pair(struct reference *r, int i, int j)
                             n[1] * f[0] - n[0] * f[1]};
     const double sum = a[3] + b[3], difference = b[3] - a[3];
     add_load(r->spheres.force[i].lane, -1.0, force, 0.5 * (sum - difference) - 0.5 * overlap,
-             turn, &result, ledger);
+             turn, &result, r->materials.full, ledger);
     add_load(r->spheres.force[j].lane, 1.0, force, 0.5 * (sum + difference) - 0.5 * overlap,
-             turn, &result, ledger);
+             turn, &result, r->materials.full, ledger);
     if (ledger)
         r->spheres.dissipated_tangential[i] += result.lost_law;
 }
@@ -381,8 +392,13 @@ static void say(struct text *text, const char *format, ...)
 
 static const char *const material_names[] = {"ore", "rubber", "steel"};
 
-static void say_materials(struct text *text, double friction)
+/* Scenes of three materials have all that contacts can do. */
+static void say_materials(struct text *text, double friction, bool full)
 {
+    static const char *const extras[] = {
+        "", "rolling_friction: 0.1", "law: linear, stiffness: 3e4, twisting_friction: 0.05",
+        "rolling_friction: 0.3, rolling: constant", "static_friction: 1.5"};
+
     say(text, "materials:\n"
               "  ore: {density: 2500, young: 2e7, poisson: 0.2}\n"
               "  rubber: {density: 1200, young: 5e6, poisson: 0.45}\n"
@@ -390,9 +406,9 @@ static void say_materials(struct text *text, double friction)
               "contact:\n  pairs:\n");
     for (int a = 0; a < 3; a++) {
         for (int b = a; b < 3; b++)
-            say(text, "    - {between: [%s, %s], friction: %g, restitution: %g}\n",
+            say(text, "    - {between: [%s, %s], friction: %g, restitution: %g%s%s}\n",
                 material_names[a], material_names[b], friction + 0.1 * (a + b),
-                0.9 - 0.15 * (a + b));
+                0.9 - 0.15 * (a + b), full && a + b > 0 ? ", " : "", full ? extras[a + b] : "");
     }
 }
 
@@ -434,7 +450,7 @@ static char *scene_text(const struct scene *scene)
     struct cloud_random random = {scene->seed};
     double(*placed)[4] = array_allocate((size_t)scene->n, sizeof *placed);
     say(&text, "time: {end: 1, step: 1e-5}\n");
-    say_materials(&text, scene->friction);
+    say_materials(&text, scene->friction, scene->n_materials == 3);
     say(&text, "%s\nspheres:\n", scene->rest);
     for (int i = 0; i < scene->n; i++) {
         cloud_place(&random, placed, i, scene->half_width,
