@@ -19,11 +19,11 @@ enum { PLACES = 97 };
 
 static const double pi = 3.14159265358979323846;
 static const double radius = 0.05, drum = 0.25; /* [m] */
-static const double young = 5e7, poisson = 0.25, density = 2400.0;
+static const struct impact_solid ore = {.young = 5e7, .poisson = 0.25, .density = 2400.0};
 
 static double hertz(double overlap)
 {
-    return 4.0 / 3.0 * impact_modulus(young, poisson, 1e15, 0.3) * sqrt(radius) * overlap *
+    return 4.0 / 3.0 * impact_modulus(&ore, &impact_rigid) * sqrt(radius) * overlap *
            sqrt(overlap);
 }
 
@@ -37,12 +37,13 @@ static struct simulation *scene(double dt, int n, double length, double friction
     struct simulation *sim = verify_scene(
         dt,
         "materials:\n  ore: {density: %g, young: %g, poisson: %g}\n"
-        "  wall: {density: 7850, young: 1e15, poisson: 0.3}\n"
+        "  wall: {density: %g, young: %g, poisson: %g}\n"
         "contact:\n  pairs:\n    - {between: [ore, ore], friction: 0, restitution: 1}\n"
         "    - {between: [ore, wall], friction: %g, restitution: 1}\n"
         "gravity: [0, 0, 0]\ndomain: {leavers: ignore}\nwatch: {overlap: 0.5}\n"
         "spheres:\n%sbodies:\n%s",
-        density, young, poisson, friction, spheres, body);
+        ore.density, ore.young, ore.poisson, impact_rigid.density, impact_rigid.young,
+        impact_rigid.poisson, friction, spheres, body);
     free(body);
     return sim;
 }
@@ -97,7 +98,7 @@ static struct range orbit(int n, double friction)
 {
     const double segment = 2.0 * pi / (double)n, overlap = 0.01 * radius, dt = 1e-5;
     const double r = drum * cos(0.5 * segment) - radius + overlap,
-                 mass = impact_mass(density, radius);
+                 mass = impact_mass(&ore, radius);
     const double speed = sqrt(hertz(overlap) * r / mass), angle = 0.5 * segment;
     const double earlier = angle - 0.5 * speed / r * dt; /* velocities are half a step late */
     const struct vec3 place = {r * cos(angle), r * sin(angle), 0.123},
