@@ -56,16 +56,19 @@ case_shared := $(patsubst %.c,$(BUILD)/%.o,\
     $(filter-out $(case_sources),$(sort $(wildcard tests/verification/*.c))))
 verification_cases := $(patsubst tests/verification/%.c,$(BUILD)/tests/%,$(case_sources))
 
+# The charts' own program: charts/*.c and what cases of verification share.
+chart_objects := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard charts/*.c)))
+
 flavour_objects := $(flavour_sources:%.c=$(BUILD)/%.o)
 rules := Makefile $(wildcard config/compiler/*.mk)
 
 all_objects := $(library_objects) $(kernel_objects) $(main:%.c=$(BUILD)/%.o) $(tool_shared) \
     $(tool_sources:%.c=$(BUILD)/%.o) $(unit_sources:%.c=$(BUILD)/%.o) $(case_sources:%.c=$(BUILD)/%.o) \
-    $(case_shared) $(flavour_objects)
+    $(case_shared) $(chart_objects) $(flavour_objects)
 
 # --------------------------------------------------------------------------------------------- goals
 
-.PHONY: all hopper test verify bench lint help install clean unit_tests verification_cases
+.PHONY: all hopper test verify bench charts-quick lint help install clean unit_tests verification_cases
 .DEFAULT_GOAL := all
 
 ##  make              build all programs into bin/
@@ -95,6 +98,12 @@ bench:
 	@config/setup test
 	@$(MAKE) --no-print-directory all
 	@BIN='$(BIN)' tests/bench/settled.sh
+
+##  make charts-quick measure speed against accuracy: tables and charts of charts/, some ten minutes
+charts-quick:
+	@config/setup test
+	@$(MAKE) --no-print-directory all $(BUILD)/charts/impacts
+	@BIN='$(BIN)' BUILD='$(BUILD)' charts/run
 
 ##  make lint         check the code's form and look for mistakes with clang-tidy and cppcheck
 lint:
@@ -129,7 +138,8 @@ verification_cases: $(verification_cases)
 # --------------------------------------------------------------------------------------------- rules
 
 $(library_objects) $(tool_shared) $(main:%.c=$(BUILD)/%.o) $(tool_sources:%.c=$(BUILD)/%.o) \
-$(unit_sources:%.c=$(BUILD)/%.o) $(case_sources:%.c=$(BUILD)/%.o) $(case_shared): \
+$(unit_sources:%.c=$(BUILD)/%.o) $(case_sources:%.c=$(BUILD)/%.o) $(case_shared) \
+$(chart_objects): \
 $(BUILD)/%.o: %.c $(rules)
 	@mkdir -p $(@D)
 	$(call say,compile,$<)$(CC) $(CPPFLAGS) $(CFLAGS) $(march) -MMD -MP -c -o $@ $<
@@ -170,5 +180,9 @@ $(verification_cases): $(BUILD)/tests/%: $(BUILD)/tests/verification/%.o $(case_
     $(flavour_objects) $(library)
 	@mkdir -p $(@D)
 	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(library) $(LDLIBS)
+
+$(BUILD)/charts/impacts: $(chart_objects) $(case_shared) $(flavour_objects) $(library)
+	@mkdir -p $(@D)
+	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 
 -include $(all_objects:.o=.d)

@@ -17,7 +17,7 @@
 #include "plot.h"
 #include "sheet.h"
 
-enum { NOTHING_TO_DRAW = 1 };
+enum { NOTHING_TO_DRAW = 1, GREY = PLOT_COLOURS - 1 /* rows without a group */ };
 
 struct wishes {
     const char *path, *out, *title;
@@ -114,7 +114,7 @@ static const char *cell(const struct chart *chart, int row, int column)
 static bool find_column(const struct chart *chart, const char *name, int *column)
 {
     *column = -1;
-    if (name == NULL)
+    if (name == NULL || name[0] == '\0')
         return true;
     *column = sheet_column(&chart->sheet, name);
     if (*column >= 0)
@@ -133,7 +133,15 @@ static bool read_number(const struct chart *chart, const char *text, double *num
     return false;
 }
 
-/* Does a row agree with all of NAME=VALUE,NAME=VALUE? */
+static bool is_listed(struct chart *chart, const char *list, char separator, const char *text)
+{
+    for (int k = 0; list != NULL && k < count_parts(list, separator); k++)
+        if (strcmp(part(chart, list, separator, k), text) == 0)
+            return true;
+    return false;
+}
+
+/* Does a row agree with all of NAME=VALUE|VALUE,NAME=VALUE? */
 static bool passes(struct chart *chart, int row, const char *where, bool *agrees)
 {
     *agrees = true;
@@ -143,7 +151,7 @@ static bool passes(struct chart *chart, int row, const char *where, bool *agrees
         int column;
         if (!find_column(chart, name, &column))
             return false;
-        *agrees = *agrees && strcmp(cell(chart, row, column), value) == 0;
+        *agrees = *agrees && is_listed(chart, value, '|', cell(chart, row, column));
     }
     return true;
 }
@@ -207,7 +215,8 @@ static bool add_curves(struct chart *chart, struct plot_panel *panel,
     const int n_groups = chart->groups.n, n_dashes = chart->dashes.n;
     for (int k = 0; k < n_groups * n_dashes; k++) {
         const int group = k / n_dashes, dash = k % n_dashes;
-        struct plot_curve curve = {.colour = group + source->index * n_groups,
+        const bool stray = chart->group >= 0 && chart->groups.list[group][0] == '\0';
+        struct plot_curve curve = {.colour = stray ? GREY : group + source->index * n_groups,
                                    .dashed = dash > 0,
                                    .markers = chart->wishes.markers || source->bare,
                                    .bare = source->bare,
@@ -219,16 +228,6 @@ static bool add_curves(struct chart *chart, struct plot_panel *panel,
             plot_add_curve(panel, curve);
     }
     return true;
-}
-
-/* Is the name in the list --points? */
-static bool is_bare(struct chart *chart, const char *name)
-{
-    const char *points = chart->wishes.points;
-    for (int k = 0; points != NULL && k < count_parts(points, ','); k++)
-        if (strcmp(part(chart, points, ',', k), name) == 0)
-            return true;
-    return false;
 }
 
 /* ----------------------------------------------------------------------------------- panels */
@@ -279,7 +278,7 @@ static bool add_all_curves(struct chart *chart, struct plot_panel *panel, int k,
     for (; source.index < count_parts(names, ','); source.index++) {
         char *name = part(chart, names, ',', source.index);
         source.name = cut_label(name);
-        source.bare = is_bare(chart, name);
+        source.bare = is_listed(chart, wishes->points, ',', name);
         if (!find_column(chart, name, &source.y) ||
             !find_column(chart, part(chart, low, ',', source.index), &source.low) ||
             !find_column(chart, part(chart, high, ',', source.index), &source.high) ||
@@ -383,8 +382,8 @@ static int read_wishes(struct wishes *wishes, int argc, char **argv)
         {"dash", 0, ARGUMENTS_TEXT, &wishes->dash, "COLUMN",
          "a curve a value, dashed but for the first", NULL},
         {"panel", 0, ARGUMENTS_TEXT, &wishes->panel, "COLUMN", "a panel a value", NULL},
-        {"where", 0, ARGUMENTS_TEXT, &wishes->where, "COLUMN=VALUE,..;..",
-         "takes only these rows", NULL},
+        {"where", 0, ARGUMENTS_TEXT, &wishes->where, "COLUMN=VALUE|..,..;..",
+         "takes only rows that agree with all of these", NULL},
         {"log", 0, ARGUMENTS_TEXT, &wishes->log, "x|y|xy;..", "logarithmic axes", NULL},
         {"markers", 0, ARGUMENTS_FLAG, &wishes->markers, NULL, "a dot at each value", NULL},
         {"points", 0, ARGUMENTS_TEXT, &wishes->points, "COLUMN,..",

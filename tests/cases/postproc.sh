@@ -231,6 +231,9 @@ for word in '>axis E<' '>L<' '>high<' '>here<' '>there<' '>hertz<' '>linear<'; d
     grep -qF "$word" panels.svg || why+=" no $word in the picture;"
 done
 try 1 "$bin/tremie-chart" points.csv -o none.svg --x steps --y error --where law=cohesive
+try 0 "$bin/tremie-chart" points.csv -o some.svg --x steps --y 'error=a;error=b' --points error --low ';low' --high ';high' \
+    --where 'law=hertz|linear,steps=20'
+[ "$(marks some.svg)" = "4 0 1" ] || why+=" dots, curves and bands of some rows: $(marks some.svg);"
 try 2 "$bin/tremie-chart" points.csv -o none.svg --x steps --y mood
 says 'error: points.csv has no column "mood"; see its first line'
 try 2 "$bin/tremie-chart" points.csv -o none.svg --x law --y error

@@ -3,7 +3,7 @@
 set -euo pipefail
 
 why= guards=
-for header in src/*/*.h postproc/*.h tests/unit/check.h tests/verification/*.h; do
+for header in src/*/*.h postproc/*.h tests/unit/check.h tests/verification/*.h charts/*.h; do
     [ -e "$header" ] || continue
     # shellcheck disable=SC2086 # flags are words
     echo "#include \"$header\"" | ${CC:-gcc} $CPPFLAGS -I. -Itests/verification -std=c11 -Wall -Wextra -Werror -Wno-unused-function \

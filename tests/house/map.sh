@@ -26,7 +26,7 @@ done
 [ -z "$why" ] && echo "ok programs" || echo "FAIL programs:$why"
 
 why=
-for page in README.md src/README.md; do
+for page in README.md src/README.md charts/README.md; do
     for link in $(grep -oE '\]\([^)#:]+\)' "$page" | sed 's/^](//; s/)$//'); do
         [ -e "$(dirname "$page")/$link" ] || why+=" $page links to $link, which is not there;"
     done
@@ -35,7 +35,7 @@ done
 
 # The goals that the help lists are goals of the makefile.
 why=
-for goal in $(make --no-print-directory help | sed -n -E 's/^make +([a-z]+) .*/\1/p'); do
+for goal in $(make --no-print-directory help | sed -n -E 's/^make +([a-z-]+) .*/\1/p'); do
     [ "$goal" = build ] || grep -qE "^$goal:" Makefile || why+=" make $goal is not there;"
 done
 [ -z "$why" ] && echo "ok goals" || echo "FAIL goals:$why"
