@@ -72,6 +72,7 @@ static double phase_of(int p, int n)
 
 struct law {
     const char *name, *more; /* keys of the pair but restitution and friction */
+    double stiffness;        /* [N/m]; 0: Hertz */
 };
 
 /* An impact but for its step and phase. */
@@ -99,6 +100,9 @@ static struct impact impact_of(const struct setting *setting)
 static double duration_of(const struct setting *setting)
 {
     const struct impact impact = impact_of(setting);
+    const double share = setting->angle > 0.0 ? 1.0 : 0.5; /* m* over m */
+    if (setting->law->stiffness > 0.0)
+        return M_PI * sqrt(share * impact_mass(&grain, RADIUS) / setting->law->stiffness);
     return impact_hertz(&impact).duration;
 }
 
@@ -215,7 +219,7 @@ static double restitution_of_law(const struct setting *setting,
                                  bool lagged)
 {
     const double mass = impact_mass(&grain, RADIUS), dt = duration_of(setting) / steps;
-    double history[CONTACT_LAW_HISTORY] = {0.0};
+    double history[CONTACT_LAW_LANES] = {0.0};
     double v = -SPEED, gap = (1.0 - phase) * SPEED * dt * -1.0; /* after the first step */
     struct contact_law_meeting meeting = {
         .normal = {0.0, 0.0, 1.0}, .inverse_radius = 2.0 / RADIUS, .inverse_mass = 2.0 / mass};
@@ -225,7 +229,8 @@ static double restitution_of_law(const struct setting *setting,
         meeting.velocity[2] = v;
         if (lagged)
             history[CONTACT_LAW_VELOCITY] = v;
-        contact_law_scalar(&meeting, pair, dt, false, history, &result);
+        contact_law_scalar(&meeting, pair, dt, (struct contact_law_choice){.ledger = false},
+                           history, &result);
         v += dt * 2.0 / mass * result.normal;
         gap += dt * v;
     }
@@ -263,30 +268,36 @@ static void tabulate_damping(FILE *table, const struct setting *setting)
 
 /* ---------------------------------------------------------------------------------- main */
 
-enum { N_VARIANTS = 2 };
+enum { LINEAR = 3, N_VARIANTS = 6 };
+/* About as stiff as Hertz' contact under a layer's weight. */
+#define LINEAR_BED "friction: 0.5, restitution: 0.5, law: linear, stiffness: 2.0e+4"
 static const struct bed_variant variants[N_VARIANTS] = {
     {"hertz-mindlin", "", "friction: 0.5, restitution: 0.5", ""},
     {"hertz-mindlin without ledger", "", "friction: 0.5, restitution: 0.5",
      "  ledger: false\n"},
+    {"hertz-mindlin, rolling", "", "friction: 0.5, restitution: 0.5, rolling_friction: 0.1",
+     ""},
+    {"linear", "", LINEAR_BED, ""},
+    {"linear without ledger", "", LINEAR_BED, "  ledger: false\n"},
+    {"linear, rolling", "", LINEAR_BED ", rolling_friction: 0.1", ""},
 };
 
-static const struct law hertz = {"hertz", ""};
+static const struct law hertz = {"hertz", "", 0.0},
+                        linear = {"linear", ", law: linear, stiffness: 1.0e+6", 1e6};
 
-static double write_costs(const char *work, const char *out)
+static void write_costs(const char *work, const char *out, struct bed_cost *costs)
 {
-    struct bed_cost costs[N_VARIANTS];
     bed_measure(N_VARIANTS, variants, work, costs);
     FILE *table = open_table(out, "costs.csv");
     fprintf(table, "# a settled bed of 2048 spheres; whole steps by CPU time, laws of pairs by "
                    "wall clock\nlaw,contacts,step_ns_a_contact,step_ratio,pairs_ratio\n");
     for (int v = 0; v < N_VARIANTS; v++)
-        fprintf(table, "%s,%d,%.1f,%.3f,%.3f\n", variants[v].name, costs[v].n_contacts,
+        fprintf(table, "\"%s\",%d,%.1f,%.3f,%.3f\n", variants[v].name, costs[v].n_contacts,
                 costs[v].step, costs[v].ratio, costs[v].ratio_pairs);
     fclose(table);
-    return costs[0].step;
 }
 
-static void write_impacts(const char *out, double ns)
+static void write_impacts(const char *out, const struct bed_cost *costs)
 {
     static const double restitutions[] = {1.0, 0.9, 0.5, 0.3};
     static const char head[] = "law,restitution,angle_deg,steps,time_us";
@@ -295,7 +306,11 @@ static void write_impacts(const char *out, double ns)
             head);
     write_names(table, SPIN, quantity_names);
     for (int k = 0; k < 4; k++)
-        tabulate(table, &(struct setting){&hertz, restitutions[k], 0.0, 0.0}, SPIN, ns);
+        tabulate(table, &(struct setting){&hertz, restitutions[k], 0.0, 0.0}, SPIN,
+                 costs[0].step);
+    for (int k = 0; k < 3; k++)
+        tabulate(table, &(struct setting){&linear, restitutions[k], 0.0, 0.0}, SPIN,
+                 costs[LINEAR].step);
     fclose(table);
 
     static const double obliques[][2] = {
@@ -308,7 +323,7 @@ static void write_impacts(const char *out, double ns)
     write_names(table, N_QUANTITIES, quantity_names);
     for (int k = 0; k < 5; k++)
         tabulate(table, &(struct setting){&hertz, obliques[k][0], 0.3, obliques[k][1]},
-                 N_QUANTITIES, ns);
+                 N_QUANTITIES, costs[0].step);
     fclose(table);
 
     table = open_table(out, "damping.csv");
@@ -325,8 +340,9 @@ int main(int argc, char **argv)
 {
     verify_begin(argc, argv, "charts of impacts", "");
     CHECK(argc == 3, "usage: impacts WORK OUT");
-    const double ns = write_costs(argv[1], argv[2]);
-    write_impacts(argv[2], ns);
+    struct bed_cost costs[N_VARIANTS];
+    write_costs(argv[1], argv[2], costs);
+    write_impacts(argv[2], costs);
     verify_end();
     return 0;
 }
