@@ -184,7 +184,9 @@ void facet_contacts_search(struct facet_contacts *facets, const struct spheres *
                 facet_tree_query(&work->trees[b], mesh, centre, reach + body_allowance[b],
                                  found);
             for (int k = 0; k < found->n; k++)
-                list_contact(facets, (struct facet_contact){i, b, found->features[k], {0.0}},
+                list_contact(facets,
+                             (struct facet_contact){
+                                 .sphere = i, .body = b, .feature = found->features[k]},
                              &old, &n);
         }
     }
@@ -233,8 +235,9 @@ void facet_contacts_restore(struct facet_contacts *facets, int n,
         if (sphere_of_record[r] < 0)
             continue;
         struct facet_contact *contact = &held[n_held++];
-        *contact = (struct facet_contact){
-            sphere_of_record[r], records[r].body, records[r].feature, {0.0}};
+        *contact = (struct facet_contact){.sphere = sphere_of_record[r],
+                                          .body = records[r].body,
+                                          .feature = records[r].feature};
         memcpy(contact->history, records[r].history, sizeof contact->history);
     }
     qsort(held, (size_t)n_held, sizeof *held, compare_contacts);
@@ -330,9 +333,10 @@ static void press(const struct step *step, int k)
         row[7] += batch->lost_damping[k];
         step->spheres->dissipated_tangential[i] += batch->lost_law[k];
     }
-    double *history = step->facets->list[acting->entry].history;
+    struct facet_contact *contact = &step->facets->list[acting->entry];
+    contact->overlap = batch->overlap[k];
     for (int h = 0; h < CONTACT_LANES; h++)
-        history[h] = batch->history[h][k];
+        contact->history[h] = batch->history[h][k];
 }
 
 static void empty_batch(const struct step *step)
@@ -467,10 +471,8 @@ void facet_contacts_elastic_energy(const struct facet_contacts *facets,
         if (!holds_history(contact))
             continue;
         const int i = contact->sphere, wall = bodies->list[contact->body].material;
-        const double a = contact->history[CONTACT_RADIUS_LANE];
-        const double curvature = spheres->spin[i].lane[3]; /* 1/R* [1/m] */
         exact_sum_add(sum, contact_law_elastic_energy(
-                               a * a * curvature, curvature,
+                               contact->overlap, spheres->spin[i].lane[3],
                                &materials->pairs[spheres->material[i] * materials->n + wall],
                                contact->history));
     }

@@ -39,6 +39,7 @@ struct facet_contact {
     int body;
     int feature; /* see model/mesh.h */
     double history[CONTACT_LANES];
+    double overlap; /* of the last facet_contacts_apply(), for its energy; not state [m] */
 };
 
 /* By id: what migrates, is saved and compared (only touching ones). */
