@@ -313,8 +313,9 @@ static const struct schema_key watch_keys[] = {
     {"motion", SCHEMA_NUMBER, "largest motion in one step over radius", .unit = "1",
      .standard = "0.1", ABOVE_TO(0.0, 1.0), AT(struct job, watch.motion)},
     {"energy", SCHEMA_NUMBER,
-     "largest error of the energy balance over the energy turned over; 0: not watched",
-     .unit = "1", .standard = "0", BETWEEN(0.0, 1e6), AT(struct job, watch.energy)},
+     "largest error of the energy balance over the energy turned over, with contact.ledger; 0: "
+     "not watched",
+     .unit = "1", .standard = "0.05", BETWEEN(0.0, 1e6), AT(struct job, watch.energy)},
     END};
 
 const struct schema_key job_keys[] = {

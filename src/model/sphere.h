@@ -92,6 +92,11 @@ static inline double *sphere_angular_velocity(const struct spheres *spheres, int
 {
     return spheres->spin[i].lane + 4;
 }
+/* 1/R [1/m]. */
+static inline double sphere_curvature(const struct spheres *spheres, int i)
+{
+    return spheres->spin[i].lane[3];
+}
 static inline double sphere_inverse_mass(const struct spheres *spheres, int i)
 {
     return spheres->spin[i].lane[7];

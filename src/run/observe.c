@@ -25,6 +25,8 @@ enum energy {
 };
 
 static const double OVERLAP_SCALE = 0x1p40;
+/* Half of the unit of an exact sum. [J] */
+static const double SUM_ROUNDING = 0x1p-71;
 
 void observe_init(struct observe *observe, const struct simulation *sim)
 {
@@ -209,23 +211,53 @@ static double energy_held(const double energies[N_ENERGIES], double removed)
     return held;
 }
 
+/* What errors of the balance are measured by: energy that has been turned over, and what rounding
+ * can do to the sums. [J] */
+static double energy_scale(const struct simulation *sim, const double energies[N_ENERGIES],
+                           double removed)
+{
+    const double roundings = (double)sim->n_spheres * (double)(sim->step + 16);
+    double scale =
+        fabs(removed) + 1e-10 * fabs(energies[ENERGY_POTENTIAL]) + roundings * SUM_ROUNDING;
+    for (int e = 0; e < N_ENERGIES; e++)
+        scale += e != ENERGY_POTENTIAL ? fabs(energies[e]) : 0.0;
+    return scale;
+}
+
+/* Closes the balance: notes what there was at the start, and the error. */
+static void close_balance(struct simulation *sim, const double energies[N_ENERGIES],
+                          double *removed, double *balance)
+{
+    struct observe *observe = &sim->observe;
+    *removed = total_of(sim, &observe->totals[OBSERVE_REMOVED_ENERGY]);
+    const double held = energy_held(energies, *removed);
+    if (sim->step == 0 && sim->comm->rank == 0) {
+        observe->totals[OBSERVE_ENERGY_START] = (struct exact_sum){0};
+        exact_sum_add(&observe->totals[OBSERVE_ENERGY_START], held);
+    }
+    *balance = held - total_of(sim, &observe->totals[OBSERVE_ENERGY_START]);
+    observe->energy_error = fabs(*balance) / energy_scale(sim, energies, *removed);
+}
+
+void observe_energy(struct simulation *sim)
+{
+    double energies[N_ENERGIES], speed_max, removed, balance;
+    int64_t counts[3];
+    if (!sim->job->energy_ledger)
+        return;
+    sum_energies(sim, energies, &speed_max, counts);
+    close_balance(sim, energies, &removed, &balance);
+}
+
 static int add_energy_values(struct simulation *sim, double *row, int n,
                              const double energies[N_ENERGIES])
 {
-    const double removed = total_of(sim, &sim->observe.totals[OBSERVE_REMOVED_ENERGY]);
-    const double held = energy_held(energies, removed);
-    if (sim->step == 0 && sim->comm->rank == 0) {
-        sim->observe.totals[OBSERVE_ENERGY_START] = (struct exact_sum){0};
-        exact_sum_add(&sim->observe.totals[OBSERVE_ENERGY_START], held);
-    }
-    const double start = total_of(sim, &sim->observe.totals[OBSERVE_ENERGY_START]);
+    double removed, balance;
+    close_balance(sim, energies, &removed, &balance);
     for (int e = 0; e < N_ENERGIES; e++)
         row[n++] = energies[e];
     row[n++] = removed;
-    row[n++] = sim->job->energy_ledger ? held - start : (double)NAN;
-    const double turned = energies[ENERGY_TRANSLATION] + energies[ENERGY_FRICTION] +
-                          energies[ENERGY_DAMPING] + fabs(energies[ENERGY_WORK]);
-    sim->observe.energy_error = turned > 0.0 ? fabs(held - start) / turned : 0.0;
+    row[n++] = sim->job->energy_ledger ? balance : (double)NAN;
     return n;
 }
 

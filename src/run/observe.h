@@ -32,13 +32,15 @@ enum observe_total {
 struct observe {
     struct exact_sum totals[OBSERVE_N_TOTALS];
     struct series table; /* on rank 0 */
-    double energy_error; /* of the last sample's balance over the energy turned over [-] */
+    double energy_error; /* of the last balance over the energy turned over [-] */
 };
 
 void observe_init(struct observe *observe, const struct simulation *sim);
 void observe_clear(struct observe *observe);
 /* Takes a sample: forces are known, spheres have not moved.  Collective. */
 void observe_sample(struct simulation *sim);
+/* Makes the energy balance alone, at the same instant of a step.  Collective. */
+void observe_energy(struct simulation *sim);
 /* Notes this step's largest overlap, the same on all ranks. */
 void observe_overlap(struct simulation *sim, double overlap);
 /* Books sphere i as leaving the run. */

@@ -157,6 +157,7 @@ static void search(struct simulation *sim, const int *moved, bool some_left_run)
     }
     sim->spent = (struct simulation_spent){0.0, 0.0, 0.0};
     sim->runtime.searches++;
+    watch_searched(&sim->watch, sim);
 }
 
 /* The high level: spheres that crossed move, copies are made anew. */

@@ -113,6 +113,7 @@ static void finish(struct simulation *sim, enum pair_kernel_isa isa)
     runtime_init(&sim->runtime, sim->step);
     bodies_place(&sim->bodies, sim->step, sim->dt);
     redistribute_first(sim);
+    watch_bodies(&sim->watch, sim);
     runtime_begin(&sim->runtime);
 }
 

@@ -5,7 +5,8 @@
  *   2 if stale: redistribute (both levels), global search         redistribute.h
  *   3 local search and contact laws of spheres with facets        contact/facet_contact.h
  *   4 contact laws of pairs of spheres, with history              contact/pair_kernel.h
- *   5 at sampling steps: energies, forces on bodies, sections     observe.h
+ *   5 now and then: contacts against the step; energies, forces   watch.h, observe.h
+ *     on bodies, sections
  *   6 gravity, integration of owned spheres to n + 1              physics/integrate.h
  *   7 passages through sections                                   sections.h
  *   8 refresh of the ghosts                                       domain/halo.h
@@ -101,12 +102,10 @@ void step_forces(struct simulation *sim)
     bodies_place(&sim->bodies, sim->step, sim->dt);
     runtime_end(runtime, RUNTIME_BODIES);
     remove_leavers(sim);
-    if (redistribute_is_due(sim)) {
+    if (redistribute_is_due(sim))
         redistribute(sim, NULL);
-        watch_motion(&sim->watch, sim);
-    } else if (redistribute_inner_is_due(sim)) {
+    else if (redistribute_inner_is_due(sim))
         redistribute_inner(sim);
-    }
     runtime_begin(runtime);
     const double began = timer_now();
     facet_contacts_apply(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials, sim->dt,
@@ -115,6 +114,8 @@ void step_forces(struct simulation *sim)
     pair_forces(sim);
     runtime_end(runtime, RUNTIME_PAIRS);
     sim->balance.busy += timer_now() - began;
+    watch_contacts(&sim->watch, sim);
+    runtime_end(runtime, RUNTIME_WATCH);
     if (sim->sample_every > 0 && sim->step % sim->sample_every == 0) {
         const struct runtime_sizes sizes = simulation_sizes(sim);
         observe_sample(sim);
@@ -122,6 +123,10 @@ void step_forces(struct simulation *sim)
         runtime_end(runtime, RUNTIME_SAMPLE);
         runtime_row(runtime, sim->comm, sim->step, (double)sim->step * sim->dt, &sizes);
         runtime_begin(runtime);
+    } else if (sim->step == 0 || sim->step % WATCH_ENERGY_EVERY == 0) {
+        observe_energy(sim);
+        watch_energy(&sim->watch, sim);
+        runtime_end(runtime, RUNTIME_SAMPLE);
     }
 }
 

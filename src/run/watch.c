@@ -10,8 +10,15 @@
 #include "base/report.h"
 #include "base/timer.h"
 #include "job/job.h"
+#include "physics/contact_law.h"
+#include "physics/critical_step.h"
 #include "run/control.h"
 #include "run/simulation.h"
+
+/* Share of the overlap at rest by which a place may be rounded. */
+static const double ROUNDING_BORNE = 0.01;
+/* Share of the critical step that is advised when a step is too large. */
+static const double STEP_ADVISED = 0.5;
 
 void watch_init(struct watch *watch, double checkpoint_every)
 {
@@ -26,77 +33,62 @@ static void fail(struct watch *watch, enum watch_failure failure)
         watch->failure = failure;
 }
 
-void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], bool bad)
-{
-    enum { SPENT_SEARCH, SPENT_INNER, OVERLAP, BAD, STOP, CHECKPOINT, N_VALUES };
-    const double pairs = sim->overlap_max, facets = sim->facets.overlap_max;
-    const bool due = sim->comm->rank == 0 && watch->checkpoint_every > 0.0 &&
-                     timer_now() > watch->checkpoint_at;
-    double values[N_VALUES] = {spent[0],
-                               spent[1],
-                               pairs > facets ? pairs : facets,
-                               bad ? 1.0 : 0.0,
-                               watch->stop_asked || control_asked() != 0 ? 1.0 : 0.0,
-                               due ? 1.0 : 0.0};
-    comm_max(sim->comm, values, N_VALUES);
-    spent[0] = values[SPENT_SEARCH];
-    spent[1] = values[SPENT_INNER];
-    watch->overlap = values[OVERLAP];
-    watch->stop_agreed = watch->stop_agreed || values[STOP] > 0.0;
-    watch->checkpoint_due = watch->checkpoint_due || values[CHECKPOINT] > 0.0;
-    if (values[BAD] > 0.0 || !(spent[0] >= 0.0) || !(watch->overlap >= 0.0))
-        fail(watch, WATCH_NOT_A_NUMBER);
-    if (!(watch->overlap <= sim->job->watch.overlap))
-        fail(watch, WATCH_OVERLAP);
-}
+/* --------------------------------------------------------------------------------------
+ * contacts and places */
 
-void watch_motion(struct watch *watch, const struct simulation *sim)
+/* Adds each contact to the sums of the spheres in it.  Owned spheres have all of theirs here;
+ * ghosts have not and are not looked at. */
+static void sum_springs(const struct simulation *sim, struct critical_step_sums *sums)
 {
+    const struct contact_list *list = &sim->contacts.now;
     const struct spheres *spheres = &sim->spheres;
-    double most = 0.0, radius_least = 1e300;
-    int worst = -1;
-    for (int i = 0; i < spheres->n_owned; i++) {
-        const double *v = sphere_velocity(spheres, i), radius = sphere_radius(spheres, i);
-        const double motion = sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * sim->dt / radius;
-        radius_least = radius < radius_least ? radius : radius_least;
-        if (motion > most) {
-            most = motion;
-            worst = i;
-        }
+    const struct material_pair *pairs = sim->materials.pairs;
+    for (int k = 0; k < list->n; k++) {
+        if (!contact_touches(list, k))
+            continue;
+        const int i = list->first[k], j = list->second[k];
+        const double w_i = sphere_inverse_mass(spheres, i),
+                     w_j = sphere_inverse_mass(spheres, j);
+        const struct critical_step_spring spring = critical_step_spring(
+            &pairs[spheres->material[i] * sim->materials.n + spheres->material[j]],
+            list->history[CONTACT_RADIUS_LANE][k], 1.0 / (w_i + w_j));
+        critical_step_add(&sums[i], &spring, w_i, w_j);
+        critical_step_add(&sums[j], &spring, w_j, w_i);
     }
-    double body_most = 0.0;
-    int body_worst = -1;
-    for (int b = 0; b < sim->bodies.n; b++) {
-        if (sim->bodies.list[b].speed_max * sim->dt > body_most) {
-            body_most = sim->bodies.list[b].speed_max * sim->dt;
-            body_worst = b;
-        }
+    for (int k = 0; k < sim->facets.n; k++) {
+        const struct facet_contact *contact = &sim->facets.list[k];
+        if (!(contact->history[CONTACT_RADIUS_LANE] > 0.0))
+            continue;
+        const int i = contact->sphere, wall = sim->bodies.list[contact->body].material;
+        const double w_i = sphere_inverse_mass(spheres, i);
+        const struct critical_step_spring spring =
+            critical_step_spring(&pairs[spheres->material[i] * sim->materials.n + wall],
+                                 contact->history[CONTACT_RADIUS_LANE], 1.0 / w_i);
+        critical_step_add(&sums[i], &spring, w_i, 0.0);
     }
-    comm_min(sim->comm, &radius_least, 1);
-    double largest[2] = {most, body_most / radius_least};
-    comm_max(sim->comm, largest, 2);
-    if (largest[0] <= sim->job->watch.motion && largest[1] <= sim->job->watch.motion)
-        return;
-    if (watch->failure != WATCH_FINE)
-        return; /* `what` is about that */
-    fail(watch, WATCH_MOTION);
-    if (largest[1] > sim->job->watch.motion && body_worst >= 0)
-        snprintf(watch->what, sizeof watch->what,
-                 "body '%.60s' moves %.3g of the least radius in a step",
-                 sim->bodies.list[body_worst].name, largest[1]);
-    else if (worst >= 0 && most >= largest[0])
-        snprintf(watch->what, sizeof watch->what,
-                 "sphere %lld moves %.3g of its radius in a step",
-                 (long long)spheres->id[worst], most);
 }
 
-void watch_energy(struct watch *watch, const struct simulation *sim)
+/* 1 / critical step for both bounds, on this rank [1/s]. */
+static void find_rates(const struct simulation *sim, double rates[2])
 {
-    const double limit = sim->job->watch.energy;
-    if (sim->job->energy_ledger && sim->observe.energy_error != sim->observe.energy_error)
-        fail(watch, WATCH_SUMS);
-    if (limit > 0.0 && !(sim->observe.energy_error <= limit))
-        fail(watch, WATCH_ENERGY);
+    struct critical_step_sums *sums = array_allocate((size_t)sim->spheres.n_all, sizeof *sums);
+    sum_springs(sim, sums);
+    rates[0] = rates[1] = 0.0;
+    for (int i = 0; i < sim->spheres.n_owned; i++) {
+        for (int k = 0; k < 2; k++) {
+            const double rate = 1.0 / critical_step_bound(&sums[i], k);
+            rates[k] = rate > rates[k] ? rate : rates[k];
+        }
+    }
+    free(sums);
+}
+
+double watch_critical_step(const struct simulation *sim)
+{
+    double rates[2];
+    find_rates(sim, rates);
+    comm_max(sim->comm, rates, 2);
+    return 1.0 / (rates[0] < rates[1] ? rates[0] : rates[1]);
 }
 
 static bool is_outside(const struct job *job, const double *x)
@@ -105,6 +97,182 @@ static bool is_outside(const struct job *job, const double *x)
     return !(x[0] >= low.x && x[1] >= low.y && x[2] >= low.z && x[0] <= high.x &&
              x[1] <= high.y && x[2] <= high.z);
 }
+
+/* The overlap that must be resolved: that of the sphere at rest on the stiffest partner; without
+ * gravity there is none, and a small one is taken [m]. */
+static double least_overlap(const struct simulation *sim, int i)
+{
+    enum { WEIGHTLESS = 100000 }; /* radii over overlap: of gentle impacts of stiff spheres */
+    const struct materials *materials = &sim->materials;
+    const double g = vec3_norm(sim->job->gravity), radius = sphere_radius(&sim->spheres, i);
+    const struct material_pair *stiffest = NULL;
+    for (int m = 0; m < materials->n; m++) {
+        const struct material_pair *pair =
+            &materials->pairs[sim->spheres.material[i] * materials->n + m];
+        if (pair->normal > 0.0 && (stiffest == NULL || pair->normal > stiffest->normal))
+            stiffest = pair;
+    }
+    if (!(g > 0.0) || stiffest == NULL)
+        return radius / WEIGHTLESS;
+    return critical_step_rest_overlap(stiffest, g / sphere_inverse_mass(&sim->spheres, i),
+                                      1.0 / radius);
+}
+
+/* The largest step between neighbouring numbers at any sphere's place, over what its contacts
+ * can bear: a hundredth of the overlap at rest. (9.3) */
+static double find_rounding(const struct simulation *sim)
+{
+    const struct spheres *spheres = &sim->spheres;
+    double most = 0.0, known_radius = 0.0, overlap = 0.0;
+    int known_material = -1;
+    for (int i = 0; i < spheres->n_owned; i++) {
+        const double *x = sphere_position(spheres, i), radius = sphere_radius(spheres, i);
+        double far = 0.0;
+        for (int k = 0; k < 3; k++)
+            far = fabs(x[k]) > far ? fabs(x[k]) : far;
+        if (radius != known_radius || spheres->material[i] != known_material) {
+            known_radius = radius;
+            known_material = spheres->material[i];
+            overlap = least_overlap(sim, i);
+        }
+        const double share = far * 0x1p-52 / (ROUNDING_BORNE * overlap);
+        if (share > most && !is_outside(sim->job, x))
+            most = share;
+    }
+    return most;
+}
+
+void watch_contacts(struct watch *watch, const struct simulation *sim)
+{
+    if (sim->step % WATCH_CONTACTS_EVERY != 0)
+        return;
+    find_rates(sim, watch->rates);
+    watch->rounding = find_rounding(sim);
+}
+
+/* --------------------------------------------------------------------------------------
+ * motion */
+
+void watch_searched(struct watch *watch, const struct simulation *sim)
+{
+    double most = 0.0;
+    for (int i = 0; i < sim->spheres.n_owned; i++) {
+        const double share = sim->spheres.allowance[i] / sphere_radius(&sim->spheres, i);
+        most = share > most ? share : most;
+    }
+    watch->allowance_most = most;
+}
+
+void watch_bodies(struct watch *watch, const struct simulation *sim)
+{
+    double radius_least = 1e300;
+    for (int i = 0; i < sim->spheres.n_owned; i++) {
+        const double radius = sphere_radius(&sim->spheres, i);
+        radius_least = radius < radius_least ? radius : radius_least;
+    }
+    comm_min(sim->comm, &radius_least, 1);
+    for (int b = 0; b < sim->bodies.n && watch->failure == WATCH_FINE; b++) {
+        const struct body *body = &sim->bodies.list[b];
+        const double motion = body->speed_max * sim->dt / radius_least;
+        if (motion <= sim->job->watch.motion)
+            continue;
+        fail(watch, WATCH_MOTION);
+        watch->motion = motion;
+        snprintf(watch->what, sizeof watch->what,
+                 "body '%.60s' moves %.3g of the least radius in a step", body->name, motion);
+    }
+}
+
+/* The largest motion of the step just done over radius; 0 where the allowances, of which
+ * `spent` has been used in this step, show that none comes near the limit.  What is found
+ * therefore does not depend on the last search.  (9.1) */
+static double find_motion(struct watch *watch, const struct simulation *sim, double spent)
+{
+    const struct spheres *spheres = &sim->spheres;
+    if (spent * watch->allowance_most <= 0.9 * sim->job->watch.motion)
+        return 0.0;
+    double most2 = 0.0;
+    int worst = -1;
+    for (int i = 0; i < spheres->n_owned; i++) {
+        const double *v = sphere_velocity(spheres, i), curvature = sphere_curvature(spheres, i);
+        const double share2 =
+            (v[0] * v[0] + v[1] * v[1] + v[2] * v[2]) * (curvature * curvature);
+        if (share2 > most2) {
+            most2 = share2;
+            worst = i;
+        }
+    }
+    const double most = sqrt(most2) * sim->dt;
+    if (worst >= 0 && most > sim->job->watch.motion)
+        snprintf(watch->what, sizeof watch->what,
+                 "sphere %lld moves %.3g of its radius in a step",
+                 (long long)spheres->id[worst], most);
+    return most;
+}
+
+/* --------------------------------------------------------------------------------------
+ * agreement */
+
+void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], bool bad)
+{
+    enum {
+        SPENT_SEARCH,
+        SPENT_INNER,
+        OVERLAP,
+        MOTION,
+        BAD,
+        RATE_0,
+        RATE_1,
+        ROUNDING,
+        STOP,
+        CHECKPOINT,
+        N_VALUES
+    };
+    const double pairs = sim->overlap_max, facets = sim->facets.overlap_max;
+    const bool due = sim->comm->rank == 0 && watch->checkpoint_every > 0.0 &&
+                     timer_now() > watch->checkpoint_at;
+    const double motion = find_motion(watch, sim, spent[0]);
+    double values[N_VALUES] = {
+        spent[0],        spent[1],        pairs > facets ? pairs : facets,
+        motion,          bad ? 1.0 : 0.0, watch->rates[0],
+        watch->rates[1], watch->rounding, watch->stop_asked || control_asked() != 0 ? 1.0 : 0.0,
+        due ? 1.0 : 0.0};
+    comm_max(sim->comm, values, N_VALUES);
+    spent[0] = values[SPENT_SEARCH];
+    spent[1] = values[SPENT_INNER];
+    watch->overlap = values[OVERLAP];
+    watch->motion = values[MOTION];
+    watch->rates[0] = watch->rates[1] = watch->rounding = 0.0;
+    watch->stop_agreed = watch->stop_agreed || values[STOP] > 0.0;
+    watch->checkpoint_due = watch->checkpoint_due || values[CHECKPOINT] > 0.0;
+    const double rate =
+        values[RATE_0] < values[RATE_1] ? values[RATE_0] : values[RATE_1]; /* [1/s] */
+    /* What fails later in this list often follows from what fails earlier. */
+    if (values[ROUNDING] > 1.0)
+        fail(watch, WATCH_FAR);
+    if (sim->dt * rate > 1.0)
+        fail(watch, WATCH_STEP);
+    if (watch->overlap > sim->job->watch.overlap)
+        fail(watch, WATCH_OVERLAP);
+    if (watch->motion > sim->job->watch.motion)
+        fail(watch, WATCH_MOTION);
+    if (values[BAD] > 0.0 || !(spent[0] >= 0.0) || !(watch->overlap >= 0.0))
+        fail(watch, WATCH_NOT_A_NUMBER);
+}
+
+void watch_energy(struct watch *watch, const struct simulation *sim)
+{
+    const double limit = sim->job->watch.energy, error = sim->observe.energy_error;
+    if (!sim->job->energy_ledger)
+        return;
+    if (error != error)
+        fail(watch, WATCH_SUMS);
+    else if (limit > 0.0 && error > limit)
+        fail(watch, WATCH_ENERGY);
+}
+
+/* --------------------------------------------------------------------------------------
+ * leavers */
 
 int watch_leavers(struct watch *watch, struct simulation *sim, unsigned char *removed)
 {
@@ -144,26 +312,103 @@ static void find_bad(const struct simulation *sim, char *what, size_t size)
     }
 }
 
-/* The deepest contact here, when it is the one that all ranks found. */
-static void find_overlap(const struct simulation *sim, double overlap, char *what, size_t size)
+/* The deepest contact of the last forces, on this rank; places have moved on since. */
+struct deepest {
+    double overlap;  /* over radius, as watched [-] */
+    double softness; /* by how much stiffer it should be [-] */
+    bool approaches;
+    char what[160];
+};
+
+/* Stiffness over the present one with which the motion that is left would end at the limit:
+ * the elastic energy there grows with the stiffness alone.  (9.2) */
+static void judge_stiffness(struct deepest *deepest, const struct material_pair *pair,
+                            double contact_radius, double inverse_radius, double mass,
+                            double speed, double limit)
+{
+    const double none[CONTACT_LAW_HISTORY] = {0.0};
+    const double overlap = contact_radius * contact_radius * inverse_radius; /* [m] */
+    const double held = contact_law_elastic_energy(overlap, inverse_radius, pair, none);
+    const double borne = contact_law_elastic_energy(overlap * limit / deepest->overlap,
+                                                    inverse_radius, pair, none);
+    deepest->approaches = speed < 0.0;
+    deepest->softness =
+        (held + (deepest->approaches ? 0.5 * mass * speed * speed : 0.0)) / borne;
+}
+
+static void find_deepest_pair(const struct simulation *sim, struct deepest *deepest)
 {
     const struct contact_list *list = &sim->contacts.now;
-    double deepest = 0.0;
+    const struct spheres *spheres = &sim->spheres;
+    int worst = -1;
     for (int k = 0; k < list->n; k++) {
-        const double *a = sim->spheres.motion[list->first[k]].lane,
-                     *b = sim->spheres.motion[list->second[k]].lane;
-        const double dx = b[0] - a[0], dy = b[1] - a[1], dz = b[2] - a[2];
-        const double depth =
-            (a[3] + b[3] - sqrt(dx * dx + dy * dy + dz * dz)) * 0.5 * (1.0 / a[3] + 1.0 / b[3]);
-        if (depth > deepest && depth > 0.5 * overlap) {
-            deepest = depth;
-            snprintf(what, size, "spheres %lld and %lld near (%.4g, %.4g, %.4g) m",
-                     (long long)sim->spheres.id[list->first[k]],
-                     (long long)sim->spheres.id[list->second[k]], a[0], a[1], a[2]);
+        const double a = list->history[CONTACT_RADIUS_LANE][k];
+        const double curvature = sphere_curvature(spheres, list->first[k]) +
+                                 sphere_curvature(spheres, list->second[k]);
+        const double overlap = 0.5 * (a * curvature) * (a * curvature); /* over radius */
+        if (overlap > deepest->overlap) {
+            deepest->overlap = overlap;
+            worst = k;
         }
     }
-    if (deepest == 0.0 && sim->facets.overlap_max >= overlap)
-        snprintf(what, size, "a sphere and a body");
+    if (worst < 0)
+        return;
+    const int i = list->first[worst], j = list->second[worst];
+    const double *x = sphere_position(spheres, i);
+    snprintf(deepest->what, sizeof deepest->what,
+             "spheres %lld and %lld near (%.4g, %.4g, %.4g) m", (long long)spheres->id[i],
+             (long long)spheres->id[j], x[0], x[1], x[2]);
+    judge_stiffness(
+        deepest,
+        &sim->materials.pairs[spheres->material[i] * sim->materials.n + spheres->material[j]],
+        list->history[CONTACT_RADIUS_LANE][worst],
+        sphere_curvature(spheres, i) + sphere_curvature(spheres, j),
+        1.0 / (sphere_inverse_mass(spheres, i) + sphere_inverse_mass(spheres, j)),
+        list->history[CONTACT_LAW_VELOCITY][worst], sim->job->watch.overlap);
+}
+
+static void find_deepest_facet(const struct simulation *sim, struct deepest *deepest)
+{
+    const struct spheres *spheres = &sim->spheres;
+    const struct facet_contact *worst = NULL;
+    for (int k = 0; k < sim->facets.n; k++) {
+        const struct facet_contact *contact = &sim->facets.list[k];
+        const double share =
+            contact->history[CONTACT_RADIUS_LANE] * sphere_curvature(spheres, contact->sphere);
+        if (share * share > deepest->overlap) {
+            deepest->overlap = share * share;
+            worst = contact;
+        }
+    }
+    if (worst == NULL)
+        return;
+    const int i = worst->sphere;
+    const struct body *body = &sim->bodies.list[worst->body];
+    const double *x = sphere_position(spheres, i);
+    snprintf(deepest->what, sizeof deepest->what,
+             "sphere %lld at (%.4g, %.4g, %.4g) m and body '%.40s'", (long long)spheres->id[i],
+             x[0], x[1], x[2], body->name);
+    judge_stiffness(
+        deepest,
+        &sim->materials.pairs[spheres->material[i] * sim->materials.n + body->material],
+        worst->history[CONTACT_RADIUS_LANE], sphere_curvature(spheres, i),
+        1.0 / sphere_inverse_mass(spheres, i), worst->history[CONTACT_LAW_VELOCITY],
+        sim->job->watch.overlap);
+}
+
+/* The deepest contact of all ranks, on all ranks. */
+static struct deepest find_deepest(const struct simulation *sim)
+{
+    struct deepest own = {0}, deepest;
+    find_deepest_pair(sim, &own);
+    find_deepest_facet(sim, &own);
+    struct deepest *all = array_allocate((size_t)sim->comm->n_ranks, sizeof *all);
+    comm_gather_all(sim->comm, &own, all, sizeof own);
+    deepest = all[0];
+    for (int q = 1; q < sim->comm->n_ranks; q++)
+        deepest = all[q].overlap > deepest.overlap ? all[q] : deepest;
+    free(all);
+    return deepest;
 }
 
 /* The first rank's words that has any, on all ranks. */
@@ -178,62 +423,102 @@ static void tell_all(const struct comm *comm, char *what, size_t size)
     free(all);
 }
 
-void watch_explain(const struct watch *watch, const struct simulation *sim)
+/* An overlap has one of three causes; at a stable step and after the start the contact is too
+ * soft. */
+static void explain_overlap(const struct simulation *sim, const char *when,
+                            const struct deepest *deepest)
 {
-    struct watch own = *watch;
-    if (watch->failure == WATCH_NOT_A_NUMBER)
-        find_bad(sim, own.what, sizeof own.what);
-    if (watch->failure == WATCH_OVERLAP)
-        find_overlap(sim, watch->overlap, own.what, sizeof own.what);
-    tell_all(sim->comm, own.what, sizeof own.what);
-    const double time = (double)sim->step * sim->dt;
-    const long long step = (long long)sim->step;
-    switch (watch->failure) {
+    const double limit = sim->job->watch.overlap;
+    if (sim->step <= 1)
+        report_error("overlap at the start: %s overlap by %.3g of a radius, more than "
+                     "watch.overlap = %.3g; place them farther apart",
+                     deepest->what, deepest->overlap, limit);
+    else if (deepest->approaches)
+        report_error("contact too soft at %s: %s overlap by %.3g of a radius, more than "
+                     "watch.overlap = %.3g, and still approach; use young at least %.2g times "
+                     "as large, or lower speeds and loads",
+                     when, deepest->what, deepest->overlap, limit, 1.1 * deepest->softness);
+    else
+        report_error("contact too soft at %s: %s overlap by %.3g of a radius, more than "
+                     "watch.overlap = %.3g; use a larger young, twice say, or lower loads",
+                     when, deepest->what, deepest->overlap, limit);
+}
+
+static void explain_step(const struct simulation *sim, const char *when, double critical,
+                         const struct deepest *deepest, const char *what)
+{
+    report_error("step too large at %s: time.step = %.4g s is %.3g of the critical step of the "
+                 "present contacts, %.4g s%s%s; the deepest, %s, overlap by %.2g of a radius; "
+                 "set time.step to %.2g s or less, or to auto",
+                 when, sim->dt, sim->dt / critical, critical, what[0] != '\0' ? "; " : "", what,
+                 deepest->what, deepest->overlap,
+                 critical_step_round_down(STEP_ADVISED * critical));
+}
+
+static void explain_others(enum watch_failure failure, const struct simulation *sim,
+                           const char *when, const char *what)
+{
+    switch (failure) {
     case WATCH_NOT_A_NUMBER:
-        report_error(
-            "not a number at step %lld (%.6g s): %s has no place or velocity any more; use a "
-            "smaller "
-            "time.step, or look for overlapping spheres at the start",
-            step, time, own.what);
-        break;
-    case WATCH_OVERLAP:
-        report_error(
-            "overlap at step %lld (%.6g s): %s overlap by %.3g of a radius, more than "
-            "watch.overlap = "
-            "%.3g; use a larger young, a smaller time.step or lower speeds, or separate what "
-            "overlaps at "
-            "the start",
-            step, time, own.what, watch->overlap, sim->job->watch.overlap);
+        report_error("not a number at %s: %s has no place or velocity any more; look for "
+                     "speeds, stiffnesses and masses that are not meant",
+                     when, what);
         break;
     case WATCH_MOTION:
         report_error(
-            "motion too fast at step %lld (%.6g s): %s, more than watch.motion = %.3g, so "
-            "contacts could "
-            "be missed; use a smaller time.step or lower speeds",
-            step, time, own.what, sim->job->watch.motion);
+            "motion too fast at %s: %s, more than watch.motion = %.3g, so contacts "
+            "could be missed; use time.step = %.2g s or less, or lower speeds",
+            when, what, sim->job->watch.motion,
+            critical_step_round_down(sim->dt * sim->job->watch.motion / sim->watch.motion));
+        break;
+    case WATCH_FAR:
+        report_error("too far from the origin at %s: places are rounded to more than %.2g of "
+                     "the overlap at rest; shift the scene towards the origin",
+                     when, ROUNDING_BORNE);
         break;
     case WATCH_LEAVER:
-        report_error(
-            "sphere left the domain at step %lld (%.6g s): %s; close the bodies, enlarge "
-            "domain.min and "
-            "domain.max, or set domain.leavers to remove or ignore",
-            step, time, own.what);
+        report_error("sphere left the domain at %s: %s; close the bodies, enlarge domain.min "
+                     "and domain.max, or set domain.leavers to remove or ignore",
+                     when, what);
         break;
     case WATCH_ENERGY:
-        report_error(
-            "energy balance at step %lld (%.6g s): off by %.3g of the energy turned over, "
-            "more than "
-            "watch.energy = %.3g; use a smaller time.step",
-            step, time, sim->observe.energy_error, sim->job->watch.energy);
+        report_error("energy balance at %s: off by %.3g of the energy turned over, more than "
+                     "watch.energy = %.3g, so the step is too large for these impacts; use a "
+                     "time.step half as large, or auto",
+                     when, sim->observe.energy_error, sim->job->watch.energy);
         break;
     case WATCH_SUMS:
-        report_error(
-            "a force or energy at step %lld (%.6g s) is beyond 1e18; check the units of the "
-            "job",
-            step, time);
+        report_error("a force or energy at %s is beyond 1e18; check the units of the job",
+                     when);
         break;
     case WATCH_FINE:
+    case WATCH_OVERLAP:
+    case WATCH_STEP:
     default:
         break;
     }
+}
+
+void watch_explain(const struct watch *watch, const struct simulation *sim)
+{
+    struct watch own = *watch;
+    char when[64];
+    if (watch->failure == WATCH_FINE)
+        return;
+    if (watch->failure == WATCH_NOT_A_NUMBER)
+        find_bad(sim, own.what, sizeof own.what);
+    tell_all(sim->comm, own.what, sizeof own.what);
+    const struct deepest deepest = find_deepest(sim);
+    const double critical = watch_critical_step(sim);
+    snprintf(when, sizeof when, "step %lld (%.6g s)", (long long)sim->step,
+             (double)sim->step * sim->dt);
+    const bool starts_deep = watch->failure == WATCH_OVERLAP && sim->step <= 1;
+    const bool by_contacts = watch->failure != WATCH_FAR && watch->failure != WATCH_LEAVER;
+    /* Whatever rang: beyond the critical step the step is to blame. */
+    if (watch->failure == WATCH_STEP || (sim->dt > critical && by_contacts && !starts_deep))
+        explain_step(sim, when, critical, &deepest, own.what);
+    else if (watch->failure == WATCH_OVERLAP)
+        explain_overlap(sim, when, &deepest);
+    else
+        explain_others(watch->failure, sim, when, own.what);
 }

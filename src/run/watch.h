@@ -5,7 +5,8 @@
  * wish to stop, a checkpoint that is due, anything that is not a number), and all act on the
  * same maxima: searching, saving, stopping and failing are collective by construction.  Each
  * failure has a name, a diagnosis (what, where, when) and a remedy; it ends the run with the
- * last good checkpoint kept.
+ * last good checkpoint kept.  THEORY.md, section 9, says what each detector rests on and within
+ * how many steps it rings.
  */
 #ifndef TREMIE_RUN_WATCH_H
 #define TREMIE_RUN_WATCH_H
@@ -17,34 +18,58 @@ struct simulation;
 enum watch_failure {
     WATCH_FINE,
     WATCH_NOT_A_NUMBER, /* a place or velocity is NaN or infinite */
-    WATCH_OVERLAP,      /* a contact overlaps too much: too soft, too fast, too large a step */
+    WATCH_STEP,         /* the step exceeds what the present contacts allow */
+    WATCH_OVERLAP,      /* a contact overlaps too much */
     WATCH_MOTION, /* a sphere or body moves too far in one step: contacts would be missed */
+    WATCH_FAR,    /* so far from the origin that rounding of places spoils contacts */
     WATCH_LEAVER, /* a sphere left the domain */
     WATCH_ENERGY, /* the energy balance does not close */
     WATCH_SUMS,   /* a total is beyond what exact sums hold */
 };
 
+/* Steps between looks at what only changes slowly.  They are part of the result: a run stops at
+ * the same step on any ranks, whenever it searches or restarts. */
+enum {
+    WATCH_CONTACTS_EVERY = 256, /* the step against the contacts; how far from the origin */
+    WATCH_ENERGY_EVERY = 1024,  /* the energy balance, beside each sample */
+};
+
 struct watch {
-    enum watch_failure failure;             /* the same on all ranks */
-    bool stop_asked;                        /* on this rank, other than by a signal */
-    bool stop_agreed;                       /* somebody asked to stop; the same on all ranks */
-    bool checkpoint_due;                    /* by rank 0's clock */
-    double overlap;                         /* largest of the last step, on any rank */
+    enum watch_failure failure; /* the same on all ranks */
+    bool stop_asked;            /* on this rank, other than by a signal */
+    bool stop_agreed;           /* somebody asked to stop; the same on all ranks */
+    bool checkpoint_due;        /* by rank 0's clock */
+    double overlap;             /* largest of the last step, on any rank */
+    double motion;              /* likewise, over radius, where it came near the limit */
     double checkpoint_every, checkpoint_at; /* rank 0's clock [s]; every 0: never */
+    double allowance_most;                  /* largest allowance over radius on this rank [-] */
+    /* This rank's findings at a step that is looked at, else 0: they go with the next
+     * reduction. */
+    double rates[2]; /* 1 / critical step of the present contacts, for both bounds [1/s] */
+    double rounding; /* of places, over what contacts can bear [-] */
     /* this rank's part of the diagnosis */
     char what[160];
 };
 
 void watch_init(struct watch *watch, double checkpoint_every);
 
+/* Notes the allowances that a search has chosen.  Local. */
+void watch_searched(struct watch *watch, const struct simulation *sim);
+/* Looks at bodies' motion, which the job prescribes, before the first step.  Collective. */
+void watch_bodies(struct watch *watch, const struct simulation *sim);
+
+/* Looks at contacts and places, where the step is one that is looked at: forces are known,
+ * nothing has moved.  Local. */
+void watch_contacts(struct watch *watch, const struct simulation *sim);
+
 /* The step's one reduction: spent[] becomes the largest on any rank.  Collective. */
 void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], bool bad);
 
-/* Looks at what only changes slowly: motion a step against radius.  At each search.
- * Collective. */
-void watch_motion(struct watch *watch, const struct simulation *sim);
-/* Looks at the energy balance of the sample just taken.  The same on all ranks. */
+/* Looks at the energy balance just made.  The same on all ranks. */
 void watch_energy(struct watch *watch, const struct simulation *sim);
+
+/* The critical step of the present contacts [s]; infinite without any.  Collective. */
+double watch_critical_step(const struct simulation *sim);
 
 /* Spheres outside the domain, at steps that the job fixes: stops the run, or marks them in
  * removed[] (n_owned flags) and returns how many there are on all ranks.  Collective. */
