@@ -11,9 +11,11 @@
 #include "base/report.h"
 #include "job/job.h"
 #include "model/body.h"
+#include "model/material.h"
 #include "model/packing.h"
-#include "physics/critical_step.h"
+#include "run/limits.h"
 #include "run/simulation.h"
+#include "run/step.h"
 #include "store/crc32.h"
 #include "store/file.h"
 
@@ -45,24 +47,15 @@ static void extent_add(struct extent *extent, struct vec3 x, double margin)
 struct group_summary {
     int64_t n;
     double mass, radius_least, radius_most; /* [kg], [m] */
-    double rayleigh, speed;                 /* least step [s], largest speed [m/s] */
-    struct packing_sphere stiffest;         /* the sphere with that step */
-    bool one_material;
+    double speed;                           /* largest [m/s] */
+    int material;                           /* -1: several */
     struct extent extent, centres;
 };
-
-static double rayleigh_step(const struct job *job, const struct packing_sphere *s)
-{
-    const struct job_material *m = &job->materials[s->material];
-    return critical_step_rayleigh(s->radius, m->density, m->young, m->poisson);
-}
 
 static struct group_summary summarise(const struct job *job, const struct packing *packing)
 {
     struct group_summary summary = {.n = packing->n,
                                     .radius_least = 1e300,
-                                    .rayleigh = 1e300,
-                                    .one_material = true,
                                     .extent = extent_nothing(),
                                     .centres = extent_nothing()};
     for (int64_t k = 0; k < packing->n; k++) {
@@ -75,14 +68,9 @@ static struct group_summary summarise(const struct job *job, const struct packin
         summary.radius_most = s.radius > summary.radius_most ? s.radius : summary.radius_most;
         extent_add(&summary.extent, s.position, s.radius);
         extent_add(&summary.centres, s.position, 0.0);
-        const double speed = vec3_norm(s.velocity), rayleigh = rayleigh_step(job, &s);
+        const double speed = vec3_norm(s.velocity);
         summary.speed = speed > summary.speed ? speed : summary.speed;
-        summary.one_material =
-            summary.one_material && (k == 0 || s.material == summary.stiffest.material);
-        if (rayleigh < summary.rayleigh) {
-            summary.rayleigh = rayleigh;
-            summary.stiffest = s;
-        }
+        summary.material = k == 0 || s.material == summary.material ? s.material : -1;
     }
     return summary;
 }
@@ -109,10 +97,43 @@ static void choose_domain(struct job *job, const struct extent *extent)
     job->domain.given = true;
 }
 
-static void choose_times(struct job *job)
+/* The highest speed that can be foreseen: of a sphere or a body at the start, or after a fall
+ * [m/s]. */
+static double foresee_speed(const struct job *job, const struct bodies *bodies,
+                            double speed_at_start)
 {
-    double critical;
-    job->time.step = simulation_choose_step(job, &critical);
+    const double fall = limits_fall_speed(job);
+    double speed = speed_at_start > fall ? speed_at_start : fall;
+    for (int b = 0; b < bodies->n; b++)
+        speed = bodies->list[b].speed_max > speed ? bodies->list[b].speed_max : speed;
+    return speed;
+}
+
+/* What the spheres of a group allow. */
+static void add_limits(struct limits *limits, const struct job *job,
+                       const struct materials *materials, int group)
+{
+    struct packing packing;
+    char *why = NULL;
+    CHECK(packing_open(&packing, job, group, &why), "%s", why);
+    const int64_t n = packing.rows != NULL || packing.n == 0 ? packing.n : 1;
+    for (int64_t k = 0; k < n; k++) {
+        const struct packing_sphere sphere = packing_get(&packing, k);
+        limits_add(limits, job, materials, &sphere);
+    }
+    packing_close(&packing);
+}
+
+static void choose_times(struct job *job, double speed)
+{
+    struct limits limits = limits_nothing(speed);
+    struct materials materials;
+    materials_build(&materials, job);
+    for (int g = 0; g < job->n_spheres; g++)
+        add_limits(&limits, job, &materials, g);
+    materials_clear(&materials);
+    if (limits.rayleigh < 1e299)
+        job->time.step = limits_step(&limits, job->time.safety);
     const double n_steps = (double)simulation_steps(job->time.end, job->time.step);
     job->time.end = (n_steps > 1.0 ? n_steps : 1.0) * job->time.step;
     if (job->output.series_every > 0.0) {
@@ -149,6 +170,7 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
     struct extent scene = extent_nothing();
     const int *grid = job->decomposition.fixed;
     int64_t n_spheres = 0;
+    double speed = 0.0; /* at the start [m/s] */
     for (int g = 0; g < job->n_spheres; g++) {
         struct packing packing;
         char *why = NULL;
@@ -161,6 +183,7 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
         extent_add(&scene, summary.extent.low, 0.0);
         extent_add(&scene, summary.extent.high, 0.0);
         n_spheres += packing.n;
+        speed = summary.speed > speed ? summary.speed : speed;
         if (packing.rows != NULL)
             job->spheres[g].sum = checksum(job->spheres[g].file);
         packing_close(&packing);
@@ -183,10 +206,10 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
     struct bodies bodies;
     bodies_build(&bodies, job);
     add_bodies(&bodies, &scene);
-    bodies_clear(&bodies);
-    if (job->time.step == 0.0)
-        choose_times(job);
     choose_domain(job, &scene);
+    if (job->time.step == 0.0)
+        choose_times(job, foresee_speed(job, &bodies, speed));
+    bodies_clear(&bodies);
     return true;
 }
 
@@ -199,19 +222,6 @@ static void print_extent(const char *label, const struct extent *e)
                e->high.x, e->low.y, e->high.y, e->low.z, e->high.z);
 }
 
-/* Steps that an impact of two such spheres at this speed lasts. */
-static double steps_per_contact(const struct job *job, const struct packing_sphere *sphere,
-                                double speed)
-{
-    const struct job_material *m = &job->materials[sphere->material];
-    const double radius = sphere->radius;
-    const double mass =
-        m->density * 4.0 / 3.0 * 3.14159265358979323846 * radius * radius * radius;
-    const double young = m->young / (2.0 * (1.0 - m->poisson * m->poisson));
-    return critical_step_hertz_duration(0.5 * mass, 0.5 * radius, young, speed) /
-           job->time.step;
-}
-
 /* Does every centre lie in the domain? */
 static bool is_inside(const struct extent *centres, const struct job *job)
 {
@@ -221,99 +231,169 @@ static bool is_inside(const struct extent *centres, const struct job *job)
            centres->high.z <= high->z;
 }
 
-static void warn_of_group(const struct job *job, const char *name,
-                          const struct group_summary *s, double speed, double contact)
+static void warn_of_limits(const struct job *job, const char *name, const struct limits *limits)
 {
-    if (job->time.step > 0.4 * s->rayleigh)
+    const double step = job->time.step, contact = limits->shortest.duration / step;
+    if (step > 0.4 * limits->rayleigh)
         report_warn(
-            "time.step is %.3g of the Rayleigh step of '%s'; runs beyond 0.4 are likely to be "
-            "unstable",
-            job->time.step / s->rayleigh, name);
+            "time.step is %.3g of the Rayleigh step of '%s'; runs beyond 0.4 are likely "
+            "to be unstable",
+            step / limits->rayleigh, name);
+    else if (step > limits->springs)
+        report_warn("time.step is %.3g of what twelve such contacts of '%s' allow; a dense bed "
+                    "would be stopped as unstable",
+                    step / limits->springs, name);
     else if (contact < 20.0)
-        report_warn(
-            "impacts of '%s' at %.3g m/s last %.3g steps; below 20, restitution scatters by "
-            "over 0.013",
-            name, speed, contact);
-    if (!is_inside(&s->centres, job))
-        report_warn("spheres of '%s' begin outside the domain", name);
+        report_warn("impacts of '%s' at %.3g m/s last %.3g steps; below 20, restitution "
+                    "scatters by over 0.013",
+                    name, limits->speed, contact);
+    if (limits->overlap > job->watch.overlap)
+        report_warn("impacts of '%s' at %.3g m/s overlap by %.2g of a radius, more than "
+                    "watch.overlap = %.2g: too soft for them",
+                    name, limits->speed, limits->overlap, job->watch.overlap);
 }
 
-static void print_group(const struct job *job, int g, struct extent *scene, int64_t *n,
-                        double fall)
+static void print_limits(const struct job *job, const struct limits *limits)
 {
-    struct packing packing;
-    char *why = NULL;
-    CHECK(packing_open(&packing, job, g, &why), "%s", why);
+    const double step = job->time.step;
+    report_say("          Rayleigh step %.4g s: the step is %.3g of it", limits->rayleigh,
+               step / limits->rayleigh);
+    if (limits->shortest.partner == NULL)
+        return;
+    report_say("          twelve contacts as deep as an impact at %.3g m/s, %.2g of a radius: "
+               "critical step %.4g s, the step is %.3g of it",
+               limits->speed, limits->overlap, limits->springs, step / limits->springs);
+    report_say("          such an impact lasts %.3g steps on %s, %.3g on %s: restitution "
+               "scatters by about %.1g",
+               limits->shortest.duration / step, limits->shortest.partner,
+               limits->longest.duration / step, limits->longest.partner,
+               limits_scatter(limits->shortest.duration / step));
+}
+
+static void print_group(const struct job *job, int g, const struct group_summary *s,
+                        const struct materials *materials, double speed)
+{
     const struct job_spheres *group = &job->spheres[g];
-    const struct group_summary s = summarise(job, &packing);
-    packing_close(&packing);
-    *n += s.n;
-    extent_add(scene, s.extent.low, 0.0);
-    extent_add(scene, s.extent.high, 0.0);
-    report_say("spheres  %s: %lld of %s, radius %.4g .. %.4g m, mass %.4g kg", group->name,
-               (long long)s.n,
-               s.one_material ? job->materials[s.stiffest.material].name : "several materials",
-               s.radius_least, s.radius_most, s.mass);
-    print_extent("         ", &s.extent);
-    const double speed = s.speed > fall ? s.speed : fall;
-    const double contact = steps_per_contact(job, &s.stiffest, speed);
-    report_say(
-        "         Rayleigh step %.4g s: the step is %.3g of it; an impact at %.3g m/s lasts "
-        "%.3g steps",
-        s.rayleigh, job->time.step / s.rayleigh, speed, contact);
-    warn_of_group(job, group->name, &s, speed, contact);
+    struct limits limits = limits_nothing(speed);
+    report_say("spheres   %s: %lld of %s, radius %.4g .. %.4g m, mass %.4g kg", group->name,
+               (long long)s->n,
+               s->material >= 0 ? job->materials[s->material].name : "several materials",
+               s->radius_least, s->radius_most, s->mass);
+    print_extent("         ", &s->extent);
+    add_limits(&limits, job, materials, g);
+    print_limits(job, &limits);
+    warn_of_limits(job, group->name, &limits);
+    if (speed * job->time.step > job->watch.motion * s->radius_least)
+        report_warn("at %.3g m/s spheres of '%s' or bodies move %.2g of the least radius in a "
+                    "step, more than watch.motion = %.2g",
+                    speed, group->name, speed * job->time.step / s->radius_least,
+                    job->watch.motion);
+    if (!is_inside(&s->centres, job))
+        report_warn("spheres of '%s' begin outside the domain", group->name);
 }
 
-static void print_bodies(const struct job *job, struct extent *scene)
+/* All groups; returns how many spheres there are. */
+static int64_t print_groups(const struct job *job, const struct bodies *bodies,
+                            struct extent *scene)
 {
-    struct bodies bodies;
-    bodies_build(&bodies, job);
-    for (int b = 0; b < bodies.n; b++) {
+    struct group_summary *groups = array_allocate((size_t)job->n_spheres, sizeof *groups);
+    struct materials materials;
+    double speed = 0.0;
+    int64_t n = 0;
+    for (int g = 0; g < job->n_spheres; g++) {
+        struct packing packing;
+        char *why = NULL;
+        CHECK(packing_open(&packing, job, g, &why), "%s", why);
+        groups[g] = summarise(job, &packing);
+        packing_close(&packing);
+        speed = groups[g].speed > speed ? groups[g].speed : speed;
+        extent_add(scene, groups[g].extent.low, 0.0);
+        extent_add(scene, groups[g].extent.high, 0.0);
+        n += groups[g].n;
+    }
+    materials_build(&materials, job);
+    speed = foresee_speed(job, bodies, speed);
+    for (int g = 0; g < job->n_spheres; g++)
+        print_group(job, g, &groups[g], &materials, speed);
+    materials_clear(&materials);
+    free(groups);
+    return n;
+}
+
+static void print_bodies(const struct job *job, const struct bodies *bodies)
+{
+    for (int b = 0; b < bodies->n; b++) {
         struct extent extent = extent_nothing();
-        const struct body *body = &bodies.list[b];
+        const struct body *body = &bodies->list[b];
         for (int v = 0; v < body->mesh.n_vertices; v++)
             extent_add(&extent, body->mesh.reference[v], 0.0);
-        report_say("body     %s: rigid, %s, %d facet%s%s", body->name,
+        report_say("body      %s: rigid, %s, %d facet%s%s", body->name,
                    job->materials[body->material].name, body->mesh.n_faces,
                    body->mesh.n_faces == 1 ? "" : "s",
                    body->moves ? ", moves as prescribed" : "");
         print_extent("         ", &extent);
     }
-    add_bodies(&bodies, scene);
-    bodies_clear(&bodies);
 }
 
-/* Speed after a fall through half the domain along gravity; 1 m/s without gravity. */
-static double fall_speed(const struct job *job)
+/* The forces of the start, as the run would find them.  Collective. */
+static void print_start(const struct job *job, const struct comm *comm)
 {
-    const struct vec3 g = job->gravity, size = vec3_sub(job->domain.max, job->domain.min);
-    const double along = fabs(g.x) * size.x + fabs(g.y) * size.y + fabs(g.z) * size.z;
-    return along > 0.0 ? sqrt(along) : 1.0;
+    struct simulation sim;
+    char what[160];
+    simulation_create(&sim, comm, job, PAIR_KERNEL_AUTO);
+    step_forces(&sim);
+    const double deepest = watch_deepest(&sim, what, sizeof what);
+    const double critical = watch_critical_step(&sim);
+    double rounding = sim.watch.rounding;
+    comm_max(comm, &rounding, 1);
+    if (deepest > 0.0)
+        report_say("start     contacts overlap by up to %.2g of a radius; their critical step "
+                   "is %.4g s, the step is %.3g of it",
+                   deepest, critical, job->time.step / critical);
+    else
+        report_say("start     nothing touches");
+    if (deepest > 0.1 * job->watch.overlap)
+        report_warn("at the start %s overlap by %.2g of a radius; beyond watch.overlap = %.2g "
+                    "the run stops",
+                    what, deepest, job->watch.overlap);
+    if (rounding > 1.0)
+        report_warn("the scene is so far from the origin that the rounding of places spoils "
+                    "contacts, %.2g times what is borne; shift it towards the origin",
+                    rounding);
+    simulation_destroy(&sim);
 }
 
-void check_print(const struct job *job, int n_ranks)
+void check_print(const struct job *job, const struct comm *comm)
 {
-    enum { BYTES_A_SPHERE = 1100, NANOSECONDS_A_STEP = 60 };
+    enum { BYTES_A_SPHERE = 1100, NANOSECONDS_A_STEP = 60, START_MOST = 4000000 };
     struct extent scene = extent_nothing();
-    int64_t n = 0;
+    struct bodies bodies;
+    const int n_ranks = comm->n_ranks;
     const double n_steps = job->time.end / job->time.step;
-    report_say("job      %s: %s", job->path, job->title);
-    report_say("time     %.6g s in %.0f steps of %.6g s", job->time.end, n_steps,
+    report_say("job       %s: %s", job->path, job->title);
+    report_say("time      %.6g s in %.0f steps of %.6g s", job->time.end, n_steps,
                job->time.step);
-    for (int k = 0; k < job->n_spheres; k++)
-        print_group(job, k, &scene, &n, fall_speed(job));
-    print_bodies(job, &scene);
+    bodies_build(&bodies, job);
+    const int64_t n = print_groups(job, &bodies, &scene);
+    print_bodies(job, &bodies);
+    add_bodies(&bodies, &scene);
+    bodies_clear(&bodies);
     print_extent("scene    ", &scene);
     const struct extent domain = {job->domain.min, job->domain.max};
     print_extent("domain   ", &domain);
     for (int s = 0; s < job->n_sections; s++)
-        report_say("section  %s", job->sections[s].name);
+        report_say("section   %s", job->sections[s].name);
+    if (n <= START_MOST * (int64_t)n_ranks)
+        print_start(job, comm);
     const double particle_steps = (double)n * n_steps;
     report_say(
-        "cost     %.3g particle-steps: of the order of %.3g s on %d rank%s; memory of the "
+        "cost      %.3g particle-steps: of the order of %.3g s on %d rank%s; memory of the "
         "order of %.3g MB",
         particle_steps, particle_steps * NANOSECONDS_A_STEP * 1e-9 / n_ranks, n_ranks,
         n_ranks == 1 ? "" : "s", (double)n * BYTES_A_SPHERE * 1e-6);
+    if (job->watch.motion + job->watch.overlap >= 1.0)
+        report_warn("watch.motion and watch.overlap add up to 1 or more: a sphere could pass "
+                    "through a surface unnoticed");
     if (n < 500 * (int64_t)n_ranks && n_ranks > 1)
         report_warn("%lld spheres on %d ranks: fewer ranks would be faster", (long long)n,
                     n_ranks);

@@ -7,6 +7,7 @@
 
 #include <stdbool.h>
 
+struct comm;
 struct job;
 struct mistakes;
 
@@ -14,8 +15,8 @@ struct mistakes;
  * only the scene shows.  Local, on the rank that read the job. */
 bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes);
 
-/* `tremie check`: prints the scene, critical steps, cost estimate and warnings.  Speaks on one
- * rank. */
-void check_print(const struct job *job, int n_ranks);
+/* `tremie check`: prints the scene, critical steps, cost estimate and warnings, after a look at
+ * the contacts of the start.  Speaks on one rank.  Collective. */
+void check_print(const struct job *job, const struct comm *comm);
 
 #endif

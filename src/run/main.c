@@ -76,7 +76,7 @@ static int run_or_check(const struct comm *comm, const struct options *options)
     char *text = NULL;
     int status = read_job(comm, options, &job, &text);
     if (status == REPORT_FINISHED && options->command == OPTIONS_CHECK)
-        check_print(&job, comm->n_ranks);
+        check_print(&job, comm);
     else if (status == REPORT_FINISHED)
         status = drive_run(comm, options, &job, text);
     job_clear(&job);

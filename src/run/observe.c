@@ -236,7 +236,8 @@ static void close_balance(struct simulation *sim, const double energies[N_ENERGI
         exact_sum_add(&observe->totals[OBSERVE_ENERGY_START], held);
     }
     *balance = held - total_of(sim, &observe->totals[OBSERVE_ENERGY_START]);
-    observe->energy_error = fabs(*balance) / energy_scale(sim, energies, *removed);
+    const double scale = energy_scale(sim, energies, *removed);
+    observe->energy_error = scale > 0.0 ? fabs(*balance) / scale : fabs(*balance);
 }
 
 void observe_energy(struct simulation *sim)

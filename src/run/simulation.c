@@ -12,7 +12,6 @@
 #include "job/job.h"
 #include "model/order.h"
 #include "model/packing.h"
-#include "physics/critical_step.h"
 #include "run/redistribute.h"
 #include "store/checkpoint.h"
 #include "store/run_folder.h"
@@ -21,32 +20,6 @@ int64_t simulation_steps(double time, double step)
 {
     const double n = time / step, most = 1e15;
     return (int64_t)((n < most ? n : most) + 0.5);
-}
-
-double simulation_choose_step(const struct job *job, double *critical)
-{
-    double least = 1e300;
-    for (int g = 0; g < job->n_spheres; g++) {
-        struct packing packing;
-        char *why = NULL;
-        if (!packing_open(&packing, job, g, &why)) {
-            free(why); /* said where the scene is built */
-            continue;
-        }
-        const int64_t n = packing.rows != NULL ? packing.n : 1;
-        for (int64_t k = 0; k < n; k++) {
-            const struct packing_sphere sphere = packing_get(&packing, k);
-            const struct job_material *m = &job->materials[sphere.material];
-            const double step =
-                critical_step_rayleigh(sphere.radius, m->density, m->young, m->poisson);
-            least = step < least ? step : least;
-        }
-        packing_close(&packing);
-    }
-    *critical = least;
-    if (job->time.step > 0.0 || !(least < 1e299))
-        return job->time.step;
-    return critical_step_round_down(job->time.safety * least);
 }
 
 static bool one_material(const struct simulation *sim)

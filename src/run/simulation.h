@@ -90,9 +90,4 @@ int simulation_save_series(struct simulation *sim, const struct run_folder *fold
 /* Steps in a time, rounded; 1e15 at most.  Local. */
 int64_t simulation_steps(double time, double step);
 
-/* The step that the job asks for, or `safety` times the critical step of the scene [s], and,
- * for reports, that critical step.  Depends on the job alone; steps read from CSV files
- * count. */
-double simulation_choose_step(const struct job *job, double *critical);
-
 #endif

@@ -411,6 +411,13 @@ static struct deepest find_deepest(const struct simulation *sim)
     return deepest;
 }
 
+double watch_deepest(const struct simulation *sim, char *what, size_t size)
+{
+    const struct deepest deepest = find_deepest(sim);
+    snprintf(what, size, "%s", deepest.what);
+    return deepest.overlap;
+}
+
 /* The first rank's words that has any, on all ranks. */
 static void tell_all(const struct comm *comm, char *what, size_t size)
 {

@@ -12,6 +12,7 @@
 #define TREMIE_RUN_WATCH_H
 
 #include <stdbool.h>
+#include <stddef.h>
 
 struct simulation;
 
@@ -70,6 +71,9 @@ void watch_energy(struct watch *watch, const struct simulation *sim);
 
 /* The critical step of the present contacts [s]; infinite without any.  Collective. */
 double watch_critical_step(const struct simulation *sim);
+
+/* The deepest contact of the last forces, over radius [-]; `what` says whose.  Collective. */
+double watch_deepest(const struct simulation *sim, char *what, size_t size);
 
 /* Spheres outside the domain, at steps that the job fixes: stops the run, or marks them in
  * removed[] (n_owned flags) and returns how many there are on all ranks.  Collective. */
