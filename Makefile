@@ -59,16 +59,23 @@ verification_cases := $(patsubst tests/verification/%.c,$(BUILD)/tests/%,$(case_
 # The charts' own program: charts/*.c and what cases of verification share.
 chart_objects := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard charts/*.c)))
 
+# The same for stability, whose cases also use what those of verification share.
+limit_sources := $(sort $(wildcard tests/stability/case_*.c))
+limit_shared := $(patsubst %.c,$(BUILD)/%.o,\
+    $(filter-out $(limit_sources),$(sort $(wildcard tests/stability/*.c))))
+stability_cases := $(patsubst tests/stability/%.c,$(BUILD)/tests/%,$(limit_sources))
+
 flavour_objects := $(flavour_sources:%.c=$(BUILD)/%.o)
 rules := Makefile $(wildcard config/compiler/*.mk)
 
 all_objects := $(library_objects) $(kernel_objects) $(main:%.c=$(BUILD)/%.o) $(tool_shared) \
     $(tool_sources:%.c=$(BUILD)/%.o) $(unit_sources:%.c=$(BUILD)/%.o) $(case_sources:%.c=$(BUILD)/%.o) \
-    $(case_shared) $(chart_objects) $(flavour_objects)
+    $(case_shared) $(limit_sources:%.c=$(BUILD)/%.o) $(limit_shared) $(chart_objects) $(flavour_objects)
 
 # --------------------------------------------------------------------------------------------- goals
 
-.PHONY: all hopper test verify bench charts-quick lint help install clean unit_tests verification_cases
+.PHONY: all hopper test verify stability bench charts-quick lint help install clean unit_tests \
+    verification_cases stability_cases
 .DEFAULT_GOAL := all
 
 ##  make              build all programs into bin/
@@ -83,7 +90,7 @@ hopper:
 ##  make test         set up what is missing, build, run all tests (FILTER=word: only some of them)
 test:
 	@config/setup test
-	@$(MAKE) --no-print-directory all unit_tests verification_cases
+	@$(MAKE) --no-print-directory all unit_tests verification_cases stability_cases
 	@BUILD='$(BUILD)' BIN='$(BIN)' FLAVOUR='$(FLAVOUR)' CC='$(CC)' CPPFLAGS='$(CPPFLAGS)' \
 	    tests/run $(FILTER)
 
@@ -92,6 +99,12 @@ verify:
 	@config/setup test
 	@$(MAKE) --no-print-directory verification_cases
 	@BUILD='$(BUILD)' tests/verification/run
+
+##  make stability    where methods fail: measures limits of the step; writes tests/stability/README.md
+stability:
+	@config/setup test
+	@$(MAKE) --no-print-directory all stability_cases
+	@BUILD='$(BUILD)' BIN='$(BIN)' FLAVOUR='$(FLAVOUR)' tests/stability/run
 
 ##  make bench        measure speed on one core: a settled bed, beside LIGGGHTS where installed
 bench:
@@ -135,11 +148,13 @@ unit_tests: $(unit_tests)
 
 verification_cases: $(verification_cases)
 
+stability_cases: $(stability_cases)
+
 # --------------------------------------------------------------------------------------------- rules
 
 $(library_objects) $(tool_shared) $(main:%.c=$(BUILD)/%.o) $(tool_sources:%.c=$(BUILD)/%.o) \
 $(unit_sources:%.c=$(BUILD)/%.o) $(case_sources:%.c=$(BUILD)/%.o) $(case_shared) \
-$(chart_objects): \
+$(limit_sources:%.c=$(BUILD)/%.o) $(limit_shared) $(chart_objects): \
 $(BUILD)/%.o: %.c $(rules)
 	@mkdir -p $(@D)
 	$(call say,compile,$<)$(CC) $(CPPFLAGS) $(CFLAGS) $(march) -MMD -MP -c -o $@ $<
@@ -184,5 +199,10 @@ $(verification_cases): $(BUILD)/tests/%: $(BUILD)/tests/verification/%.o $(case_
 $(BUILD)/charts/impacts: $(chart_objects) $(case_shared) $(flavour_objects) $(library)
 	@mkdir -p $(@D)
 	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+$(stability_cases): $(BUILD)/tests/%: $(BUILD)/tests/stability/%.o $(limit_shared) \
+    $(case_shared) $(flavour_objects) $(library)
+	@mkdir -p $(@D)
+	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(library) $(LDLIBS)
 
 -include $(all_objects:.o=.d)

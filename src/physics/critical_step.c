@@ -2,6 +2,8 @@
 #include "physics/critical_step.h"
 
 #include <math.h>
+#include <stdbool.h>
+#include <string.h>
 
 #include "base/elementary.h"
 
@@ -18,34 +20,134 @@ double critical_step_hertz_duration(double mass, double radius, double young, do
            elementary_exp(0.2 * elementary_log(mass * mass / (radius * young * young * speed)));
 }
 
-struct critical_step_spring critical_step_spring(const struct material_pair *pair,
-                                                 double contact_radius, double mass)
+struct critical_step_contact critical_step_contact(const struct material_pair *pair,
+                                                   double contact_radius, double mass)
 {
-    const double along = pair->friction > 0.0 ? 3.5 : 0.0;          /* [-] */
-    const double k_n = 1.5 * pair->normal * contact_radius;         /* [N/m] (1.5) */
-    const double k_t = along * pair->tangential * contact_radius;   /* [N/m] (1.9) */
+    const bool grips = pair->friction > 0.0;
     const double c_n = pair->damping * sqrt(contact_radius * mass); /* [kg/s] (1.6) */
-    const double d_n = 4.0 * c_n, d_t = 2.0 * along * pair->damping_ratio * c_n;
-    return (struct critical_step_spring){k_n > k_t ? k_n : k_t, d_n > d_t ? d_n : d_t};
+    return (struct critical_step_contact){
+        .stiffness = {1.5 * pair->normal * contact_radius,
+                      grips ? pair->tangential * contact_radius : 0.0},
+        .damping = {4.0 * c_n, grips ? 2.0 * pair->damping_ratio * c_n : 0.0}};
+}
+
+double critical_step_share(double inverse_mass, double curvature, double curvature_of_partner)
+{
+    return inverse_mass * (1.0 + curvature_of_partner / curvature);
+}
+
+static double larger(double a, double b)
+{
+    return a > b ? a : b;
 }
 
 void critical_step_add(struct critical_step_sums *sums,
-                       const struct critical_step_spring *spring, double inverse_mass,
-                       double inverse_mass_of_partner)
+                       const struct critical_step_contact *contact, double share)
 {
-    const double shares[2] = {inverse_mass + sqrt(inverse_mass * inverse_mass_of_partner),
-                              inverse_mass_of_partner > 0.0 ? 2.0 * inverse_mass
-                                                            : inverse_mass}; /* [1/kg] */
-    for (int k = 0; k < 2; k++) {
-        sums->stiffness[k] += spring->stiffness * shares[k];
-        sums->damping[k] += spring->damping * shares[k];
+    sums->stiffness += share * larger(contact->stiffness[0], 3.5 * contact->stiffness[1]);
+    sums->damping += share * larger(contact->damping[0], 3.5 * contact->damping[1]);
+}
+
+double critical_step_of_sums(const struct critical_step_sums *sums)
+{
+    const double a = sums->stiffness, b = sums->damping;
+    return 8.0 / (b + sqrt(b * b + 16.0 * a)); /* of a dt^2 + b dt = 4 */
+}
+
+/* Adds across n n + along (1 - n n) for places, 5/2 along (1 - n n) for turns, and what joins
+ * the two: a turn moves the surface. */
+static void add_block(double m[6][6], double across, double along, const double n[3])
+{
+    const double join = sqrt(2.5) * along;
+    for (int r = 0; r < 3; r++) {
+        for (int c = 0; c < 3; c++) {
+            const double nn = n[r] * n[c], rest = (r == c ? 1.0 : 0.0) - nn;
+            m[r][c] += across * nn + along * rest;
+            m[3 + r][3 + c] += 2.5 * along * rest;
+        }
+        const int p = (r + 1) % 3, q = (r + 2) % 3;
+        m[r][3 + p] += join * n[q];
+        m[r][3 + q] -= join * n[p];
+        m[3 + p][r] += join * n[q];
+        m[3 + q][r] -= join * n[p];
     }
 }
 
-double critical_step_bound(const struct critical_step_sums *sums, int k)
+void critical_step_add_matrix(struct critical_step_matrix *matrix,
+                              const struct critical_step_contact *contact, double share,
+                              const double normal[3])
 {
-    const double a = sums->stiffness[k], b = sums->damping[k];
-    return 8.0 / (b + sqrt(b * b + 16.0 * a)); /* of a dt^2 + b dt = 4 */
+    add_block(matrix->stiffness, share * contact->stiffness[0], share * contact->stiffness[1],
+              normal);
+    add_block(matrix->damping, share * contact->damping[0], share * contact->damping[1],
+              normal);
+}
+
+static void square(double m[6][6])
+{
+    double s[6][6];
+    for (int r = 0; r < 6; r++) {
+        for (int c = 0; c < 6; c++) {
+            s[r][c] = 0.0;
+            for (int k = 0; k < 6; k++)
+                s[r][c] += m[r][k] * m[k][c];
+        }
+    }
+    memcpy(m, s, sizeof s);
+}
+
+/* The 16th root of the trace of the 16th power: the largest eigenvalue, as none is negative, or
+ * up to 6^(1/16) = 1.12 times it. */
+double critical_step_load(const struct critical_step_matrix *matrix, double dt)
+{
+    double m[6][6], trace = 0.0, sum = 0.0;
+    for (int r = 0; r < 6; r++) {
+        for (int c = 0; c < 6; c++)
+            m[r][c] = 0.25 * dt * (dt * matrix->stiffness[r][c] + matrix->damping[r][c]);
+        trace += m[r][r];
+    }
+    if (!(trace > 0.0))
+        return trace;
+    for (int r = 0; r < 6; r++)
+        for (int c = 0; c < 6; c++)
+            m[r][c] /= trace;
+    for (int k = 0; k < 3; k++)
+        square(m);
+    for (int r = 0; r < 6; r++)
+        for (int c = 0; c < 6; c++)
+            sum += m[r][c] * m[r][c];
+    return trace * sqrt(sqrt(sqrt(sqrt(sum))));
+}
+
+double critical_step_of_matrix(const struct critical_step_matrix *matrix)
+{
+    enum { HALVINGS = 40 };
+    struct critical_step_sums sums = {0.0, 0.0};
+    for (int k = 0; k < 6; k++) {
+        sums.stiffness += matrix->stiffness[k][k];
+        sums.damping += matrix->damping[k][k];
+    }
+    double low = critical_step_of_sums(&sums), high = 4.0 * low; /* a trace is six at most */
+    if (!(low < 1e300))
+        return low;
+    for (int k = 0; k < HALVINGS; k++) {
+        const double middle = 0.5 * (low + high);
+        if (critical_step_load(matrix, middle) <= 1.0)
+            low = middle;
+        else
+            high = middle;
+    }
+    return low;
+}
+
+double critical_step_amid(const struct critical_step_contact *contact, double inverse_mass,
+                          int n)
+{
+    const double share = 2.0 * inverse_mass * n / 3.0, *k = contact->stiffness,
+                 *c = contact->damping;
+    const struct critical_step_sums sums = {share * larger(k[0] + 2.0 * k[1], 5.0 * k[1]),
+                                            share * larger(c[0] + 2.0 * c[1], 5.0 * c[1])};
+    return critical_step_of_sums(&sums);
 }
 
 double critical_step_rest_overlap(const struct material_pair *pair, double weight,

@@ -16,37 +16,58 @@ double critical_step_rayleigh(double radius, double density, double young, doubl
 double critical_step_hertz_duration(double mass, double radius, double young, double speed);
 
 /*
- * What one contact does to the step, and what all of a sphere's contacts do.
+ * What contacts do to the step.
  *
- * Contacts are springs between masses.  The highest frequency that a set of them can have is
- * bounded sphere by sphere, from the springs on it alone: so the bound needs no eigenvalues and
- * no neighbours' neighbours.  It is a bound, not the limit; tests/stability measures the
- * distance.
+ * Contacts are springs and dashpots between masses.  The highest frequency that a set of them
+ * can have is bounded sphere by sphere, from the contacts on it alone: each contact is split
+ * between its two spheres, and what is then on a sphere is a matrix of its six freedoms.  So
+ * the bound needs no neighbours' neighbours.  It comes in two strengths: sums over a sphere's
+ * contacts, cheap, and the matrix, worth its cost where the sums leave a doubt.  Either holds;
+ * tests/stability measures how far the real limit is above.
  */
-struct critical_step_spring {
-    double stiffness; /* of the stiffer direction, turning included [N/m]          (6.3) */
-    double damping;   /* likewise, as integration takes it [kg/s]                  (6.4) */
+
+/* A contact, as integration feels it. */
+struct critical_step_contact {
+    double stiffness[2]; /* across and along the contact [N/m] */
+    double damping[2]; /* likewise, times 4 and 2: dashpots use velocities of the past [kg/s] */
 };
 
-/* The spring of a contact of radius a [m] between spheres of effective mass m* [kg]. */
-struct critical_step_spring critical_step_spring(const struct material_pair *pair,
-                                                 double contact_radius, double mass);
+/* The contact of radius a [m] between spheres of effective mass m* [kg].  (6.3) */
+struct critical_step_contact critical_step_contact(const struct material_pair *pair,
+                                                   double contact_radius, double mass);
 
-/* Sums over the contacts of a sphere. */
+/* The part of a contact that falls to the first sphere, over its mass [1/kg]; curvatures in
+ * 1/m, the partner's 0 for a wall.  (6.4) */
+double critical_step_share(double inverse_mass, double curvature, double curvature_of_partner);
+
+/* Sums over a sphere's contacts: of the stiffer direction, turning included. */
 struct critical_step_sums {
-    /* With neighbours taken at their own mass, and as if they had the sphere's. */
-    double stiffness[2]; /* [1/s2] */
-    double damping[2];   /* [1/s] */
+    double stiffness; /* [1/s2] */
+    double damping;   /* [1/s] */
 };
-
-/* Adds a contact with a partner; inverse masses in 1/kg, the partner's 0 for a wall. */
 void critical_step_add(struct critical_step_sums *sums,
-                       const struct critical_step_spring *spring, double inverse_mass,
-                       double inverse_mass_of_partner);
+                       const struct critical_step_contact *contact, double share);
+/* The step up to which such springs are stable [s]; infinite without springs.  (6.5) */
+double critical_step_of_sums(const struct critical_step_sums *sums);
 
-/* The step up to which springs of these sums are stable [s]; infinite without springs.  Over
- * all spheres take the least for k = 0 and for k = 1; the larger of the two holds.  (6.5) */
-double critical_step_bound(const struct critical_step_sums *sums, int k);
+/* The same as a matrix over the three directions and three axes; rotation is measured such that
+ * inertia is the mass.  (6.6) */
+struct critical_step_matrix {
+    double stiffness[6][6]; /* [1/s2] */
+    double damping[6][6];   /* [1/s] */
+};
+/* Adds a contact whose normal points away from the sphere. */
+void critical_step_add_matrix(struct critical_step_matrix *matrix,
+                              const struct critical_step_contact *contact, double share,
+                              const double normal[3]);
+/* dt^2 / 4 times the largest eigenvalue, or up to an eighth more: not above 1 is stable [-]. */
+double critical_step_load(const struct critical_step_matrix *matrix, double dt);
+/* The step at which that is 1 [s]. */
+double critical_step_of_matrix(const struct critical_step_matrix *matrix);
+
+/* The step that n equal contacts allow a sphere on all sides, among its like [s].  (6.7) */
+double critical_step_amid(const struct critical_step_contact *contact, double inverse_mass,
+                          int n);
 
 /* Overlap at rest of a sphere that weighs this much on one contact [m], from weight [N] and
  * 1/R* [1/m]. */

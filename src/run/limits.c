@@ -30,7 +30,6 @@ struct limits limits_nothing(double speed)
 static void add_partner(struct limits *limits, const struct material_pair *pair,
                         const char *partner, double mass, double radius)
 {
-    struct critical_step_sums sums = {{0.0}, {0.0}};
     double overlap =
         critical_step_impact_overlap(pair, 0.5 * mass, 2.0 / radius, limits->speed);
     limits->overlap = overlap > limits->overlap * radius ? overlap / radius : limits->overlap;
@@ -38,11 +37,9 @@ static void add_partner(struct limits *limits, const struct material_pair *pair,
                                                          0.75 * pair->normal, limits->speed);
     if (!(overlap <= OVERLAP_MOST * radius))
         overlap = OVERLAP_MOST * radius;
-    const struct critical_step_spring spring =
-        critical_step_spring(pair, sqrt(0.5 * radius * overlap), 0.5 * mass);
-    for (int k = 0; k < PARTNERS; k++)
-        critical_step_add(&sums, &spring, 1.0 / mass, 1.0 / mass);
-    const double springs = critical_step_bound(&sums, 0);
+    const struct critical_step_contact contact =
+        critical_step_contact(pair, sqrt(0.5 * radius * overlap), 0.5 * mass);
+    const double springs = critical_step_amid(&contact, 1.0 / mass, PARTNERS);
     limits->springs = springs < limits->springs ? springs : limits->springs;
     if (duration < limits->shortest.duration)
         limits->shortest = (struct limits_impact){duration, partner};

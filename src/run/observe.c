@@ -31,6 +31,7 @@ static const double SUM_ROUNDING = 0x1p-71;
 void observe_init(struct observe *observe, const struct simulation *sim)
 {
     *observe = (struct observe){0};
+    observe->work_before = array_allocate((size_t)sim->bodies.n, sizeof *observe->work_before);
     struct series *table = &observe->table;
     series_init(table, "series");
     series_add_column(table, "1", "steps done", "step");
@@ -84,6 +85,13 @@ void observe_init(struct observe *observe, const struct simulation *sim)
 void observe_clear(struct observe *observe)
 {
     series_clear(&observe->table);
+    free(observe->work_before);
+}
+
+void observe_before(struct simulation *sim)
+{
+    for (int b = 0; b < sim->bodies.n; b++)
+        sim->observe.work_before[b] = sim->facets.loads[b].work;
 }
 
 /* Half-step velocity brought to the step by half of what the step will add.
@@ -180,8 +188,12 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
     counts[2] = count_facets(sim);
     facet_contacts_elastic_energy(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials,
                                   &sums[ENERGY_ELASTIC]);
-    for (int b = 0; b < sim->facets.n_bodies; b++)
+    /* A force works in half of the interval before the step and half of the one after: at the
+     * step half of what it adds is done, the mean of before and after. */
+    for (int b = 0; b < sim->facets.n_bodies; b++) {
+        exact_sum_merge(&sums[ENERGY_WORK], &sim->observe.work_before[b]);
         exact_sum_merge(&sums[ENERGY_WORK], &sim->facets.loads[b].work);
+    }
     static const int removed[] = {OBSERVE_REMOVED_FRICTION, OBSERVE_REMOVED_DAMPING,
                                   OBSERVE_REMOVED_TANGENTIAL};
     for (int k = 0; k < 3; k++)
@@ -191,6 +203,7 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
     comm_max(sim->comm, &speed2_max, 1);
     for (int e = 0; e < N_ENERGIES; e++)
         energies[e] = exact_sum_value(&sums[e]);
+    energies[ENERGY_WORK] *= 0.5;
     *speed_max = sqrt(speed2_max);
 }
 
@@ -211,8 +224,8 @@ static double energy_held(const double energies[N_ENERGIES], double removed)
     return held;
 }
 
-/* What errors of the balance are measured by: energy that has been turned over, and what rounding
- * can do to the sums. [J] */
+/* What errors of the balance are measured by: energy that has been turned over, and what
+ * rounding can do to the sums. [J] */
 static double energy_scale(const struct simulation *sim, const double energies[N_ENERGIES],
                            double removed)
 {

@@ -31,12 +31,15 @@ enum observe_total {
 
 struct observe {
     struct exact_sum totals[OBSERVE_N_TOTALS];
-    struct series table; /* on rank 0 */
-    double energy_error; /* of the last balance over the energy turned over [-] */
+    struct series table;           /* on rank 0 */
+    struct exact_sum *work_before; /* of each body before this step's forces, where looked at */
+    double energy_error;           /* of the last balance over the energy turned over [-] */
 };
 
 void observe_init(struct observe *observe, const struct simulation *sim);
 void observe_clear(struct observe *observe);
+/* Notes what the step's forces will add to, before them.  Local. */
+void observe_before(struct simulation *sim);
 /* Takes a sample: forces are known, spheres have not moved.  Collective. */
 void observe_sample(struct simulation *sim);
 /* Makes the energy balance alone, at the same instant of a step.  Collective. */

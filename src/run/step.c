@@ -95,6 +95,36 @@ static void integrate(struct simulation *sim, double spent[2], bool *bad)
     *bad = work.bad;
 }
 
+static bool is_sampled(const struct simulation *sim)
+{
+    return sim->sample_every > 0 && sim->step % sim->sample_every == 0;
+}
+
+static bool is_balanced(const struct simulation *sim)
+{
+    return sim->step == 0 || sim->step % WATCH_ENERGY_EVERY == 0;
+}
+
+/* Contacts against the step; energies, forces on bodies and sections. */
+static void observe(struct simulation *sim)
+{
+    struct runtime *runtime = &sim->runtime;
+    watch_contacts(&sim->watch, sim);
+    runtime_end(runtime, RUNTIME_WATCH);
+    if (is_sampled(sim)) {
+        const struct runtime_sizes sizes = simulation_sizes(sim);
+        observe_sample(sim);
+        watch_energy(&sim->watch, sim);
+        runtime_end(runtime, RUNTIME_SAMPLE);
+        runtime_row(runtime, sim->comm, sim->step, (double)sim->step * sim->dt, &sizes);
+        runtime_begin(runtime);
+    } else if (is_balanced(sim)) {
+        observe_energy(sim);
+        watch_energy(&sim->watch, sim);
+        runtime_end(runtime, RUNTIME_SAMPLE);
+    }
+}
+
 void step_forces(struct simulation *sim)
 {
     struct runtime *runtime = &sim->runtime;
@@ -106,6 +136,8 @@ void step_forces(struct simulation *sim)
         redistribute(sim, NULL);
     else if (redistribute_inner_is_due(sim))
         redistribute_inner(sim);
+    if (is_sampled(sim) || is_balanced(sim))
+        observe_before(sim);
     runtime_begin(runtime);
     const double began = timer_now();
     facet_contacts_apply(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials, sim->dt,
@@ -114,20 +146,7 @@ void step_forces(struct simulation *sim)
     pair_forces(sim);
     runtime_end(runtime, RUNTIME_PAIRS);
     sim->balance.busy += timer_now() - began;
-    watch_contacts(&sim->watch, sim);
-    runtime_end(runtime, RUNTIME_WATCH);
-    if (sim->sample_every > 0 && sim->step % sim->sample_every == 0) {
-        const struct runtime_sizes sizes = simulation_sizes(sim);
-        observe_sample(sim);
-        watch_energy(&sim->watch, sim);
-        runtime_end(runtime, RUNTIME_SAMPLE);
-        runtime_row(runtime, sim->comm, sim->step, (double)sim->step * sim->dt, &sizes);
-        runtime_begin(runtime);
-    } else if (sim->step == 0 || sim->step % WATCH_ENERGY_EVERY == 0) {
-        observe_energy(sim);
-        watch_energy(&sim->watch, sim);
-        runtime_end(runtime, RUNTIME_SAMPLE);
-    }
+    observe(sim);
 }
 
 void step(struct simulation *sim)

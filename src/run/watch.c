@@ -10,6 +10,7 @@
 #include "base/report.h"
 #include "base/timer.h"
 #include "job/job.h"
+#include "physics/contact_geometry.h"
 #include "physics/contact_law.h"
 #include "physics/critical_step.h"
 #include "run/control.h"
@@ -36,59 +37,153 @@ static void fail(struct watch *watch, enum watch_failure failure)
 /* --------------------------------------------------------------------------------------
  * contacts and places */
 
-/* Adds each contact to the sums of the spheres in it.  Owned spheres have all of theirs here;
- * ghosts have not and are not looked at. */
-static void sum_springs(const struct simulation *sim, struct critical_step_sums *sums)
+/* A touching contact: what it is, and how it is split between its spheres. */
+struct split {
+    struct critical_step_contact contact;
+    double share[2]; /* [1/kg] */
+};
+
+static struct split split_pair(const struct simulation *sim, int k)
 {
     const struct contact_list *list = &sim->contacts.now;
     const struct spheres *spheres = &sim->spheres;
-    const struct material_pair *pairs = sim->materials.pairs;
+    const int i = list->first[k], j = list->second[k];
+    const double w_i = sphere_inverse_mass(spheres, i), w_j = sphere_inverse_mass(spheres, j);
+    const double u_i = sphere_curvature(spheres, i), u_j = sphere_curvature(spheres, j);
+    const int pair = spheres->material[i] * sim->materials.n + spheres->material[j];
+    return (struct split){
+        critical_step_contact(&sim->materials.pairs[pair],
+                              list->history[CONTACT_RADIUS_LANE][k], 1.0 / (w_i + w_j)),
+        {critical_step_share(w_i, u_i, u_j), critical_step_share(w_j, u_j, u_i)}};
+}
+
+static struct split split_facet(const struct simulation *sim,
+                                const struct facet_contact *contact)
+{
+    const struct spheres *spheres = &sim->spheres;
+    const int i = contact->sphere, wall = sim->bodies.list[contact->body].material;
+    const double w = sphere_inverse_mass(spheres, i);
+    return (struct split){
+        critical_step_contact(
+            &sim->materials.pairs[spheres->material[i] * sim->materials.n + wall],
+            contact->history[CONTACT_RADIUS_LANE], 1.0 / w),
+        {critical_step_share(w, sphere_curvature(spheres, i), 0.0), 0.0}};
+}
+
+static bool facet_touches(const struct facet_contact *contact)
+{
+    return contact->history[CONTACT_RADIUS_LANE] > 0.0;
+}
+
+/* Adds each contact to the sums of the spheres in it.  Owned spheres have all of theirs here;
+ * ghosts have not and are not looked at. */
+static void sum_contacts(const struct simulation *sim, struct critical_step_sums *sums)
+{
+    const struct contact_list *list = &sim->contacts.now;
     for (int k = 0; k < list->n; k++) {
         if (!contact_touches(list, k))
             continue;
-        const int i = list->first[k], j = list->second[k];
-        const double w_i = sphere_inverse_mass(spheres, i),
-                     w_j = sphere_inverse_mass(spheres, j);
-        const struct critical_step_spring spring = critical_step_spring(
-            &pairs[spheres->material[i] * sim->materials.n + spheres->material[j]],
-            list->history[CONTACT_RADIUS_LANE][k], 1.0 / (w_i + w_j));
-        critical_step_add(&sums[i], &spring, w_i, w_j);
-        critical_step_add(&sums[j], &spring, w_j, w_i);
+        const struct split split = split_pair(sim, k);
+        critical_step_add(&sums[list->first[k]], &split.contact, split.share[0]);
+        critical_step_add(&sums[list->second[k]], &split.contact, split.share[1]);
     }
     for (int k = 0; k < sim->facets.n; k++) {
         const struct facet_contact *contact = &sim->facets.list[k];
-        if (!(contact->history[CONTACT_RADIUS_LANE] > 0.0))
+        if (!facet_touches(contact))
             continue;
-        const int i = contact->sphere, wall = sim->bodies.list[contact->body].material;
-        const double w_i = sphere_inverse_mass(spheres, i);
-        const struct critical_step_spring spring =
-            critical_step_spring(&pairs[spheres->material[i] * sim->materials.n + wall],
-                                 contact->history[CONTACT_RADIUS_LANE], 1.0 / w_i);
-        critical_step_add(&sums[i], &spring, w_i, 0.0);
+        const struct split split = split_facet(sim, contact);
+        critical_step_add(&sums[contact->sphere], &split.contact, split.share[0]);
     }
 }
 
-/* 1 / critical step for both bounds, on this rank [1/s]. */
-static void find_rates(const struct simulation *sim, double rates[2])
+/* The matrices of the spheres that have a slot (else -1). */
+static void fill_matrices(const struct simulation *sim, const int *slots,
+                          struct critical_step_matrix *matrices)
 {
-    struct critical_step_sums *sums = array_allocate((size_t)sim->spheres.n_all, sizeof *sums);
-    sum_springs(sim, sums);
-    rates[0] = rates[1] = 0.0;
-    for (int i = 0; i < sim->spheres.n_owned; i++) {
-        for (int k = 0; k < 2; k++) {
-            const double rate = 1.0 / critical_step_bound(&sums[i], k);
-            rates[k] = rate > rates[k] ? rate : rates[k];
+    const struct contact_list *list = &sim->contacts.now;
+    for (int k = 0; k < list->n; k++) {
+        const int sides[2] = {list->first[k], list->second[k]};
+        if (!contact_touches(list, k) || (slots[sides[0]] < 0 && slots[sides[1]] < 0))
+            continue;
+        const double *a = sphere_position(&sim->spheres, sides[0]),
+                     *b = sphere_position(&sim->spheres, sides[1]);
+        const struct vec3 between = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+        const struct split split = split_pair(sim, k);
+        for (int s = 0; s < 2; s++) {
+            const struct vec3 n =
+                vec3_scale((s == 0 ? 1.0 : -1.0) / vec3_norm(between), between);
+            if (slots[sides[s]] >= 0)
+                critical_step_add_matrix(&matrices[slots[sides[s]]], &split.contact,
+                                         split.share[s], (double[3]){n.x, n.y, n.z});
         }
     }
+    for (int k = 0; k < sim->facets.n; k++) {
+        const struct facet_contact *contact = &sim->facets.list[k];
+        if (!facet_touches(contact) || slots[contact->sphere] < 0)
+            continue;
+        const double *x = sphere_position(&sim->spheres, contact->sphere);
+        const struct vec3 n =
+            contact_geometry_closest(&sim->bodies.list[contact->body].mesh, contact->feature,
+                                     (struct vec3){x[0], x[1], x[2]})
+                .normal; /* from the feature to the centre */
+        const struct split split = split_facet(sim, contact);
+        critical_step_add_matrix(&matrices[slots[contact->sphere]], &split.contact,
+                                 split.share[0], (double[3]){-n.x, -n.y, -n.z});
+    }
+}
+
+/* The critical step of the present contacts of this rank's spheres, where it is below `doubt`
+ * [s]; else infinite.  Sums settle it for most spheres. */
+static double find_critical(const struct simulation *sim, double doubt)
+{
+    const size_t n_all = (size_t)sim->spheres.n_all;
+    struct critical_step_sums *sums = array_allocate(n_all, sizeof *sums);
+    int *slots = array_allocate(n_all, sizeof *slots), n = 0;
+    double least = INFINITY;
+    sum_contacts(sim, sums);
+    for (int i = 0; i < sim->spheres.n_all; i++) {
+        const bool doubtful =
+            i < sim->spheres.n_owned && critical_step_of_sums(&sums[i]) < doubt;
+        slots[i] = doubtful ? n++ : -1;
+    }
+    if (n > 0) {
+        struct critical_step_matrix *matrices = array_allocate((size_t)n, sizeof *matrices);
+        fill_matrices(sim, slots, matrices);
+        for (int m = 0; m < n; m++) {
+            if (!(critical_step_load(&matrices[m], doubt) > 1.0))
+                continue;
+            const double critical = critical_step_of_matrix(&matrices[m]);
+            least = critical < least ? critical : least;
+        }
+        free(matrices);
+    }
+    free(slots);
     free(sums);
+    return least;
+}
+
+/* The least that sums alone allow on any rank [s]. */
+static double find_least_of_sums(const struct simulation *sim)
+{
+    struct critical_step_sums *sums = array_allocate((size_t)sim->spheres.n_all, sizeof *sums);
+    double least = INFINITY;
+    sum_contacts(sim, sums);
+    for (int i = 0; i < sim->spheres.n_owned; i++) {
+        const double step = critical_step_of_sums(&sums[i]);
+        least = step < least ? step : least;
+    }
+    free(sums);
+    comm_min(sim->comm, &least, 1);
+    return least;
 }
 
 double watch_critical_step(const struct simulation *sim)
 {
-    double rates[2];
-    find_rates(sim, rates);
-    comm_max(sim->comm, rates, 2);
-    return 1.0 / (rates[0] < rates[1] ? rates[0] : rates[1]);
+    enum { SUMS_OFF_BY = 3 }; /* what matrices allow at most, in what sums allow */
+    const double most = SUMS_OFF_BY * find_least_of_sums(sim);
+    double critical = find_critical(sim, most);
+    comm_min(sim->comm, &critical, 1);
+    return critical < most ? critical : most;
 }
 
 static bool is_outside(const struct job *job, const double *x)
@@ -98,8 +193,8 @@ static bool is_outside(const struct job *job, const double *x)
              x[1] <= high.y && x[2] <= high.z);
 }
 
-/* The overlap that must be resolved: that of the sphere at rest on the stiffest partner; without
- * gravity there is none, and a small one is taken [m]. */
+/* The overlap that must be resolved: that of the sphere at rest on the stiffest partner;
+ * without gravity there is none, and a small one is taken [m]. */
 static double least_overlap(const struct simulation *sim, int i)
 {
     enum { WEIGHTLESS = 100000 }; /* radii over overlap: of gentle impacts of stiff spheres */
@@ -146,7 +241,7 @@ void watch_contacts(struct watch *watch, const struct simulation *sim)
 {
     if (sim->step % WATCH_CONTACTS_EVERY != 0)
         return;
-    find_rates(sim, watch->rates);
+    watch->rate = 1.0 / find_critical(sim, sim->dt);
     watch->rounding = find_rounding(sim);
 }
 
@@ -221,8 +316,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
         OVERLAP,
         MOTION,
         BAD,
-        RATE_0,
-        RATE_1,
+        RATE,
         ROUNDING,
         STOP,
         CHECKPOINT,
@@ -232,25 +326,30 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
     const bool due = sim->comm->rank == 0 && watch->checkpoint_every > 0.0 &&
                      timer_now() > watch->checkpoint_at;
     const double motion = find_motion(watch, sim, spent[0]);
+    const bool stop = watch->stop_asked || control_asked() != 0;
     double values[N_VALUES] = {
-        spent[0],        spent[1],        pairs > facets ? pairs : facets,
-        motion,          bad ? 1.0 : 0.0, watch->rates[0],
-        watch->rates[1], watch->rounding, watch->stop_asked || control_asked() != 0 ? 1.0 : 0.0,
-        due ? 1.0 : 0.0};
+        [SPENT_SEARCH] = spent[0],
+        [SPENT_INNER] = spent[1],
+        [OVERLAP] = pairs > facets ? pairs : facets,
+        [MOTION] = motion,
+        [BAD] = bad ? 1.0 : 0.0,
+        [RATE] = watch->rate,
+        [ROUNDING] = watch->rounding,
+        [STOP] = stop ? 1.0 : 0.0,
+        [CHECKPOINT] = due ? 1.0 : 0.0,
+    };
     comm_max(sim->comm, values, N_VALUES);
     spent[0] = values[SPENT_SEARCH];
     spent[1] = values[SPENT_INNER];
     watch->overlap = values[OVERLAP];
     watch->motion = values[MOTION];
-    watch->rates[0] = watch->rates[1] = watch->rounding = 0.0;
+    watch->rate = watch->rounding = 0.0;
     watch->stop_agreed = watch->stop_agreed || values[STOP] > 0.0;
     watch->checkpoint_due = watch->checkpoint_due || values[CHECKPOINT] > 0.0;
-    const double rate =
-        values[RATE_0] < values[RATE_1] ? values[RATE_0] : values[RATE_1]; /* [1/s] */
     /* What fails later in this list often follows from what fails earlier. */
     if (values[ROUNDING] > 1.0)
         fail(watch, WATCH_FAR);
-    if (sim->dt * rate > 1.0)
+    if (sim->dt * values[RATE] > 1.0)
         fail(watch, WATCH_STEP);
     if (watch->overlap > sim->job->watch.overlap)
         fail(watch, WATCH_OVERLAP);
