@@ -315,7 +315,7 @@ static const struct schema_key watch_keys[] = {
     {"energy", SCHEMA_NUMBER,
      "largest error of the energy balance over the energy turned over, with contact.ledger; 0: "
      "not watched",
-     .unit = "1", .standard = "0.05", BETWEEN(0.0, 1e6), AT(struct job, watch.energy)},
+     .unit = "1", .standard = "0.1", BETWEEN(0.0, 1e6), AT(struct job, watch.energy)},
     END};
 
 const struct schema_key job_keys[] = {

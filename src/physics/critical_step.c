@@ -23,12 +23,15 @@ double critical_step_hertz_duration(double mass, double radius, double young, do
 struct critical_step_contact critical_step_contact(const struct material_pair *pair,
                                                    double contact_radius, double mass)
 {
-    const bool grips = pair->friction > 0.0;
-    const double c_n = pair->damping * sqrt(contact_radius * mass); /* [kg/s] (1.6) */
+    const bool grips = pair->friction > 0.0 || pair->static_friction > 0.0;
+    const bool rolls = grips && (pair->rolling > 0.0 || pair->twisting > 0.0);
+    const double exponent = pair->linear > 0.0 ? 1.0 : 1.5;
+    const double k_t = grips ? pair->tangential * contact_radius : 0.0; /* [N/m] (1.9) */
+    const double c_n = pair->damping * sqrt(contact_radius * mass);     /* [kg/s] (1.6) */
+    const double c_t = grips ? pair->damping_ratio * c_n : 0.0;         /* [kg/s] (1.12) */
     return (struct critical_step_contact){
-        .stiffness = {1.5 * pair->normal * contact_radius,
-                      grips ? pair->tangential * contact_radius : 0.0},
-        .damping = {4.0 * c_n, grips ? 2.0 * pair->damping_ratio * c_n : 0.0}};
+        .stiffness = {exponent * pair->normal * contact_radius, k_t, rolls ? k_t : 0.0},
+        .damping = {4.0 * c_n, 2.0 * c_t, rolls ? 2.0 * c_t : 0.0}};
 }
 
 double critical_step_share(double inverse_mass, double curvature, double curvature_of_partner)
@@ -44,8 +47,9 @@ static double larger(double a, double b)
 void critical_step_add(struct critical_step_sums *sums,
                        const struct critical_step_contact *contact, double share)
 {
-    sums->stiffness += share * larger(contact->stiffness[0], 3.5 * contact->stiffness[1]);
-    sums->damping += share * larger(contact->damping[0], 3.5 * contact->damping[1]);
+    const double *k = contact->stiffness, *d = contact->damping;
+    sums->stiffness += share * larger(k[0], 3.5 * k[1] + 2.5 * k[2]);
+    sums->damping += share * larger(d[0], 3.5 * d[1] + 2.5 * d[2]);
 }
 
 double critical_step_of_sums(const struct critical_step_sums *sums)
@@ -54,16 +58,17 @@ double critical_step_of_sums(const struct critical_step_sums *sums)
     return 8.0 / (b + sqrt(b * b + 16.0 * a)); /* of a dt^2 + b dt = 4 */
 }
 
-/* Adds across n n + along (1 - n n) for places, 5/2 along (1 - n n) for turns, and what joins
- * the two: a turn moves the surface. */
-static void add_block(double m[6][6], double across, double along, const double n[3])
+/* Adds across n n + along (1 - n n) for places, 5/2 along (1 - n n) + 5/2 of what resists
+ * rolling and twisting for turns, and what joins the two: a turn moves the surface. */
+static void add_block(double m[6][6], const double k[3], double share, const double n[3])
 {
+    const double across = share * k[0], along = share * k[1];
     const double join = sqrt(2.5) * along;
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 3; c++) {
             const double nn = n[r] * n[c], rest = (r == c ? 1.0 : 0.0) - nn;
             m[r][c] += across * nn + along * rest;
-            m[3 + r][3 + c] += 2.5 * along * rest;
+            m[3 + r][3 + c] += 2.5 * (along * rest + (r == c ? share * k[2] : 0.0));
         }
         const int p = (r + 1) % 3, q = (r + 2) % 3;
         m[r][3 + p] += join * n[q];
@@ -77,10 +82,8 @@ void critical_step_add_matrix(struct critical_step_matrix *matrix,
                               const struct critical_step_contact *contact, double share,
                               const double normal[3])
 {
-    add_block(matrix->stiffness, share * contact->stiffness[0], share * contact->stiffness[1],
-              normal);
-    add_block(matrix->damping, share * contact->damping[0], share * contact->damping[1],
-              normal);
+    add_block(matrix->stiffness, contact->stiffness, share, normal);
+    add_block(matrix->damping, contact->damping, share, normal);
 }
 
 static void square(double m[6][6])
@@ -145,23 +148,36 @@ double critical_step_amid(const struct critical_step_contact *contact, double in
 {
     const double share = 2.0 * inverse_mass * n / 3.0, *k = contact->stiffness,
                  *c = contact->damping;
-    const struct critical_step_sums sums = {share * larger(k[0] + 2.0 * k[1], 5.0 * k[1]),
-                                            share * larger(c[0] + 2.0 * c[1], 5.0 * c[1])};
+    const struct critical_step_sums sums = {
+        share * larger(k[0] + 2.0 * k[1], 5.0 * k[1] + 7.5 * k[2]),
+        share * larger(c[0] + 2.0 * c[1], 5.0 * c[1] + 7.5 * c[2])};
     return critical_step_of_sums(&sums);
 }
 
 double critical_step_rest_overlap(const struct material_pair *pair, double weight,
                                   double inverse_radius)
 {
-    const double share = weight / pair->normal; /* a overlap [m2] */
+    const double share = weight / pair->normal; /* a overlap [m2]; or the overlap [m] */
+    if (pair->linear > 0.0)
+        return share;
     return elementary_exp(elementary_log(share * share * inverse_radius) / 3.0);
 }
 
 double critical_step_impact_overlap(const struct material_pair *pair, double mass,
                                     double inverse_radius, double speed)
 {
+    if (pair->linear > 0.0)
+        return speed * sqrt(mass / pair->normal);
     const double share = 1.25 * mass * speed * speed / pair->normal; /* a overlap^2 [m3] */
     return elementary_exp(0.2 * elementary_log(share * share * inverse_radius));
+}
+
+double critical_step_duration(const struct material_pair *pair, double mass,
+                              double inverse_radius, double speed)
+{
+    if (pair->linear > 0.0)
+        return 3.14159265358979323846 * sqrt(mass / pair->normal);
+    return critical_step_hertz_duration(mass, 1.0 / inverse_radius, 0.75 * pair->normal, speed);
 }
 
 /* Compares quotients, which are correctly rounded; products with powers of ten would make 11 of

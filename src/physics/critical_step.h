@@ -28,8 +28,9 @@ double critical_step_hertz_duration(double mass, double radius, double young, do
 
 /* A contact, as integration feels it. */
 struct critical_step_contact {
-    double stiffness[2]; /* across and along the contact [N/m] */
-    double damping[2]; /* likewise, times 4 and 2: dashpots use velocities of the past [kg/s] */
+    /* Across and along the contact, and of rolling and twisting, as at an arm of R [N/m]. */
+    double stiffness[3];
+    double damping[3]; /* likewise, times 4, 2, 2: dashpots use velocities of the past [kg/s] */
 };
 
 /* The contact of radius a [m] between spheres of effective mass m* [kg].  (6.3) */
@@ -77,6 +78,10 @@ double critical_step_rest_overlap(const struct material_pair *pair, double weigh
  * [m/s]. (1.25) */
 double critical_step_impact_overlap(const struct material_pair *pair, double mass,
                                     double inverse_radius, double speed);
+
+/* How long such an impact lasts [s]. */
+double critical_step_duration(const struct material_pair *pair, double mass,
+                              double inverse_radius, double speed);
 
 /* The largest number of two significant decimal digits that is not above x > 0. */
 double critical_step_round_down(double x);

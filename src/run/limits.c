@@ -33,12 +33,12 @@ static void add_partner(struct limits *limits, const struct material_pair *pair,
     double overlap =
         critical_step_impact_overlap(pair, 0.5 * mass, 2.0 / radius, limits->speed);
     limits->overlap = overlap > limits->overlap * radius ? overlap / radius : limits->overlap;
-    const double duration = critical_step_hertz_duration(0.5 * mass, 0.5 * radius,
-                                                         0.75 * pair->normal, limits->speed);
+    const double duration =
+        critical_step_duration(pair, 0.5 * mass, 2.0 / radius, limits->speed);
     if (!(overlap <= OVERLAP_MOST * radius))
         overlap = OVERLAP_MOST * radius;
-    const struct critical_step_contact contact =
-        critical_step_contact(pair, sqrt(0.5 * radius * overlap), 0.5 * mass);
+    const struct critical_step_contact contact = critical_step_contact(
+        pair, pair->linear > 0.0 ? 1.0 : sqrt(0.5 * radius * overlap), 0.5 * mass);
     const double springs = critical_step_amid(&contact, 1.0 / mass, PARTNERS);
     limits->springs = springs < limits->springs ? springs : limits->springs;
     if (duration < limits->shortest.duration)

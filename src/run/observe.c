@@ -249,7 +249,14 @@ static void close_balance(struct simulation *sim, const double energies[N_ENERGI
         exact_sum_add(&observe->totals[OBSERVE_ENERGY_START], held);
     }
     *balance = held - total_of(sim, &observe->totals[OBSERVE_ENERGY_START]);
-    const double scale = energy_scale(sim, energies, *removed);
+    /* The most so far: all of it may be potential energy just now. */
+    const double turned = energy_scale(sim, energies, *removed);
+    const double before = total_of(sim, &observe->totals[OBSERVE_TURNED]);
+    const double scale = turned > before ? turned : before;
+    if (turned > before && sim->comm->rank == 0) {
+        observe->totals[OBSERVE_TURNED] = (struct exact_sum){0};
+        exact_sum_add(&observe->totals[OBSERVE_TURNED], turned);
+    }
     observe->energy_error = scale > 0.0 ? fabs(*balance) / scale : fabs(*balance);
 }
 
@@ -365,7 +372,7 @@ int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
 {
     static const char *const totals[OBSERVE_N_TOTALS] = {
         "energy_start",       "removed_energy", "removed_friction", "removed_damping",
-        "removed_tangential", "last_step",      "overlap",
+        "removed_tangential", "last_step",      "turned",           "overlap",
     };
     static const char *const loads[] = {"force_x",  "force_y",  "force_z",
                                         "torque_x", "torque_y", "torque_z"};

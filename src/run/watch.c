@@ -419,14 +419,21 @@ struct deepest {
     char what[160];
 };
 
+/* Overlap [m] of the last forces: of Hertz's contact from its radius, else from places, which
+ * have moved on by a step. */
+static double overlap_of(const struct material_pair *pair, double contact_radius,
+                         double inverse_radius, double now)
+{
+    return pair->linear > 0.0 ? now : contact_radius * contact_radius * inverse_radius;
+}
+
 /* Stiffness over the present one with which the motion that is left would end at the limit:
  * the elastic energy there grows with the stiffness alone.  (9.2) */
 static void judge_stiffness(struct deepest *deepest, const struct material_pair *pair,
-                            double contact_radius, double inverse_radius, double mass,
-                            double speed, double limit)
+                            double overlap, double inverse_radius, double mass, double speed,
+                            double limit)
 {
-    const double none[CONTACT_LAW_HISTORY] = {0.0};
-    const double overlap = contact_radius * contact_radius * inverse_radius; /* [m] */
+    const double none[CONTACT_LAW_LANES] = {0.0};
     const double held = contact_law_elastic_energy(overlap, inverse_radius, pair, none);
     const double borne = contact_law_elastic_energy(overlap * limit / deepest->overlap,
                                                     inverse_radius, pair, none);
@@ -439,60 +446,62 @@ static void find_deepest_pair(const struct simulation *sim, struct deepest *deep
 {
     const struct contact_list *list = &sim->contacts.now;
     const struct spheres *spheres = &sim->spheres;
-    int worst = -1;
     for (int k = 0; k < list->n; k++) {
-        const double a = list->history[CONTACT_RADIUS_LANE][k];
-        const double curvature = sphere_curvature(spheres, list->first[k]) +
-                                 sphere_curvature(spheres, list->second[k]);
-        const double overlap = 0.5 * (a * curvature) * (a * curvature); /* over radius */
-        if (overlap > deepest->overlap) {
-            deepest->overlap = overlap;
-            worst = k;
-        }
+        if (!contact_touches(list, k))
+            continue;
+        const int i = list->first[k], j = list->second[k];
+        const double *a = sphere_position(spheres, i), *b = sphere_position(spheres, j);
+        const double curvature = sphere_curvature(spheres, i) + sphere_curvature(spheres, j);
+        const struct material_pair *pair =
+            &sim->materials
+                 .pairs[spheres->material[i] * sim->materials.n + spheres->material[j]];
+        const struct vec3 between = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+        const double overlap = overlap_of(
+            pair, list->history[CONTACT_RADIUS_LANE][k], curvature,
+            sphere_radius(spheres, i) + sphere_radius(spheres, j) - vec3_norm(between));
+        const double relative = 0.5 * overlap * curvature;
+        if (relative <= deepest->overlap)
+            continue;
+        /* Not a number where two centres were in one place. */
+        deepest->overlap = relative == relative ? relative : sim->watch.overlap;
+        snprintf(deepest->what, sizeof deepest->what,
+                 "spheres %lld and %lld near (%.4g, %.4g, %.4g) m", (long long)spheres->id[i],
+                 (long long)spheres->id[j], a[0], a[1], a[2]);
+        judge_stiffness(deepest, pair, overlap, curvature,
+                        1.0 /
+                            (sphere_inverse_mass(spheres, i) + sphere_inverse_mass(spheres, j)),
+                        list->history[CONTACT_LAW_VELOCITY][k], sim->job->watch.overlap);
     }
-    if (worst < 0)
-        return;
-    const int i = list->first[worst], j = list->second[worst];
-    const double *x = sphere_position(spheres, i);
-    snprintf(deepest->what, sizeof deepest->what,
-             "spheres %lld and %lld near (%.4g, %.4g, %.4g) m", (long long)spheres->id[i],
-             (long long)spheres->id[j], x[0], x[1], x[2]);
-    judge_stiffness(
-        deepest,
-        &sim->materials.pairs[spheres->material[i] * sim->materials.n + spheres->material[j]],
-        list->history[CONTACT_RADIUS_LANE][worst],
-        sphere_curvature(spheres, i) + sphere_curvature(spheres, j),
-        1.0 / (sphere_inverse_mass(spheres, i) + sphere_inverse_mass(spheres, j)),
-        list->history[CONTACT_LAW_VELOCITY][worst], sim->job->watch.overlap);
 }
 
 static void find_deepest_facet(const struct simulation *sim, struct deepest *deepest)
 {
     const struct spheres *spheres = &sim->spheres;
-    const struct facet_contact *worst = NULL;
     for (int k = 0; k < sim->facets.n; k++) {
         const struct facet_contact *contact = &sim->facets.list[k];
-        const double share =
-            contact->history[CONTACT_RADIUS_LANE] * sphere_curvature(spheres, contact->sphere);
-        if (share * share > deepest->overlap) {
-            deepest->overlap = share * share;
-            worst = contact;
-        }
+        if (!facet_touches(contact))
+            continue;
+        const int i = contact->sphere;
+        const struct body *body = &sim->bodies.list[contact->body];
+        const struct material_pair *pair =
+            &sim->materials.pairs[spheres->material[i] * sim->materials.n + body->material];
+        const double *x = sphere_position(spheres, i);
+        const double curvature = sphere_curvature(spheres, i);
+        const double distance = contact_geometry_closest(&body->mesh, contact->feature,
+                                                         (struct vec3){x[0], x[1], x[2]})
+                                    .distance;
+        const double overlap = overlap_of(pair, contact->history[CONTACT_RADIUS_LANE],
+                                          curvature, sphere_radius(spheres, i) - distance);
+        if (!(overlap * curvature > deepest->overlap))
+            continue;
+        deepest->overlap = overlap * curvature;
+        snprintf(deepest->what, sizeof deepest->what,
+                 "sphere %lld at (%.4g, %.4g, %.4g) m and body '%.40s'",
+                 (long long)spheres->id[i], x[0], x[1], x[2], body->name);
+        judge_stiffness(deepest, pair, overlap, curvature,
+                        1.0 / sphere_inverse_mass(spheres, i),
+                        contact->history[CONTACT_LAW_VELOCITY], sim->job->watch.overlap);
     }
-    if (worst == NULL)
-        return;
-    const int i = worst->sphere;
-    const struct body *body = &sim->bodies.list[worst->body];
-    const double *x = sphere_position(spheres, i);
-    snprintf(deepest->what, sizeof deepest->what,
-             "sphere %lld at (%.4g, %.4g, %.4g) m and body '%.40s'", (long long)spheres->id[i],
-             x[0], x[1], x[2], body->name);
-    judge_stiffness(
-        deepest,
-        &sim->materials.pairs[spheres->material[i] * sim->materials.n + body->material],
-        worst->history[CONTACT_RADIUS_LANE], sphere_curvature(spheres, i),
-        1.0 / sphere_inverse_mass(spheres, i), worst->history[CONTACT_LAW_VELOCITY],
-        sim->job->watch.overlap);
 }
 
 /* The deepest contact of all ranks, on all ranks. */
@@ -618,12 +627,17 @@ void watch_explain(const struct watch *watch, const struct simulation *sim)
     const double critical = watch_critical_step(sim);
     snprintf(when, sizeof when, "step %lld (%.6g s)", (long long)sim->step,
              (double)sim->step * sim->dt);
-    const bool starts_deep = watch->failure == WATCH_OVERLAP && sim->step <= 1;
+    /* Spheres in one place have no normal between them: what comes of it is not a number. */
+    const bool too_deep =
+        watch->failure == WATCH_OVERLAP ||
+        ((watch->failure == WATCH_NOT_A_NUMBER || watch->failure == WATCH_SUMS) &&
+         deepest.overlap > sim->job->watch.overlap);
+    const bool starts_deep = too_deep && sim->step <= 1;
     const bool by_contacts = watch->failure != WATCH_FAR && watch->failure != WATCH_LEAVER;
     /* Whatever rang: beyond the critical step the step is to blame. */
     if (watch->failure == WATCH_STEP || (sim->dt > critical && by_contacts && !starts_deep))
         explain_step(sim, when, critical, &deepest, own.what);
-    else if (watch->failure == WATCH_OVERLAP)
+    else if (too_deep)
         explain_overlap(sim, when, &deepest);
     else
         explain_others(watch->failure, sim, when, own.what);

@@ -516,7 +516,7 @@ static struct seen compare_scene(const struct scene *scene)
     return seen;
 }
 
-#define CALM "watch: {overlap: 1, motion: 1}\noutput: {series: {every: 0.001}}\n"
+#define CALM "watch: {overlap: 1, motion: 1, energy: 0}\noutput: {series: {every: 0.001}}\n"
 #define STAY "domain: {leavers: ignore}\n"
 #define BOX                                                                                    \
     "  - {name: walls, material: steel, geometry: {kind: box, min: [-0.015, -0.015, -0.015], " \
