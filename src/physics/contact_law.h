@@ -158,7 +158,8 @@ struct contact_law_work {
     lanes v_now;                  /* v_n brought from the half step to the step [m/s] */
     lanes f_elastic;              /* [N] */
     lanes scale;                  /* radius over the last one where it shrinks, else 1 */
-    lanes stretch;                /* tangential stiffness x dt [N s/m] */
+    lanes middle;                 /* radius in the step's middle, as it grows [m] */
+    lanes stretch;                /* tangential stiffness there x dt [N s/m] */
     lanes c_t;                    /* tangential dashpot [kg/s] */
 };
 
@@ -175,7 +176,7 @@ struct contact_law_spring {
     lanes_mask sliding;
     /* With the ledger on: products of memory and velocity, and, while it slides, the mean
      * spring force times the stretch that sliding spares it [N2]. */
-    lanes memory_memory, memory_velocity, slip;
+    lanes memory_memory, memory_velocity, held_held, slip;
 };
 
 /* The normal spring and its dashpot, cut off where they would pull. */
@@ -247,6 +248,8 @@ LANES_INLINE void contact_law_stretch(struct contact_law_spring *spring, lanes_m
     spring->sliding = g_squared > spring->hold * spring->hold;
     if (lanes_any(spring->sliding))
         contact_law_slide(spring, g_squared, n, ledger, h1, h, g);
+    if (ledger)
+        spring->held_held = contact_law_product(h, h, n);
 #pragma GCC unroll 3
     for (int x = 0; x < n; x++) {
         spring->force[x] = g[x];
@@ -261,9 +264,10 @@ LANES_INLINE void contact_law_spring_ledger(const struct contact_law_spring *spr
                                             lanes dragged, lanes softness, lanes dt,
                                             struct contact_law_result *result)
 {
-    const lanes inverse_a = 1.0 / work->radius; /* infinite where they do not touch [1/m] */
-    const lanes slid = spring->slip * softness * inverse_a;
-    /* Products with the spring's force, scaled (h1). */
+    /* Both are infinite where they do not touch [1/m]. */
+    const lanes inverse_a = 1.0 / work->radius, inverse_middle = 1.0 / work->middle;
+    const lanes slid = spring->slip * softness * inverse_middle;
+    /* Products with the spring's force, scaled (h1) and as it is now (h). */
     const lanes h1_h1 = spring->scale * spring->scale * spring->memory_memory;
     const lanes h1_v = spring->scale * spring->memory_velocity;
 
@@ -272,9 +276,10 @@ LANES_INLINE void contact_law_spring_ledger(const struct contact_law_spring *spr
 
     /* The memory turned, the stiffness changed, and work was done against the force before. */
     const lanes turned = spring->memory_memory + taken;
-    const lanes after = lanes_keep(work->touching, h1_h1 * inverse_a);
-    const lanes dropped =
-        lanes_keep(work->touched, softness * (turned * work->inverse_old - after));
+    const lanes before = lanes_keep(work->touched, turned * work->inverse_old);
+    const lanes gained = (spring->held_held - h1_h1) * inverse_middle;
+    const lanes after = lanes_keep(work->touching, spring->held_held * inverse_a - gained);
+    const lanes dropped = softness * (before - after);
     result->lost_law += 0.5 * (dropped + (spring->memory_velocity - h1_v) * dt); /* (1.18) */
 }
 
@@ -430,7 +435,9 @@ LANES_INLINE void contact_law(const struct contact_law_meeting *meeting,
     contact_law_push(&work, meeting, pair, history, result);
     work.inverse_old = one / radius_old;
     work.scale = lanes_where(work.radius < radius_old, work.radius * work.inverse_old, one);
-    work.stretch = pair->tangential * dt * work.radius; /* (1.9) */
+    const lanes smaller = lanes_where(work.radius < radius_old, work.radius, radius_old);
+    work.middle = 0.5 * (work.radius + smaller);
+    work.stretch = pair->tangential * dt * work.middle; /* (1.11) */
     result->lost_friction = result->lost_damping = result->lost_law = lanes_all(0.0);
     contact_law_grip(&work, v_t, meeting, pair, dt, choice, history, result);
     if (choice.full)
