@@ -437,6 +437,12 @@ LANES_INLINE void contact_law(const struct contact_law_meeting *meeting,
     work.scale = lanes_where(work.radius < radius_old, work.radius * work.inverse_old, one);
     const lanes smaller = lanes_where(work.radius < radius_old, work.radius, radius_old);
     work.middle = 0.5 * (work.radius + smaller);
+    const lanes_mask begins = pair->linear & work.touching & (radius_old <= lanes_all(0.0));
+    if (lanes_any(begins)) { /* a spring of full stiffness for part of the step (1.33) */
+        const lanes part = meeting->overlap / (-work.v_n * dt);
+        const lanes_mask within = (part < one) & (part > lanes_all(0.0));
+        work.middle = lanes_where(begins & within, part, work.middle);
+    }
     work.stretch = pair->tangential * dt * work.middle; /* (1.11) */
     result->lost_friction = result->lost_damping = result->lost_law = lanes_all(0.0);
     contact_law_grip(&work, v_t, meeting, pair, dt, choice, history, result);

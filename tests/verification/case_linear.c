@@ -127,10 +127,10 @@ static void compare_orders(void)
     verify_source("central differences");
     verify_row("order: restitution .5, mean error", "", 2.0, 0.5 * log2(mean[0] / mean[2]), 0.1,
                VERIFY_ABSOLUTE, why);
-    verify_source("the tangential spring's first step, see above");
-    verify_row("order: patch speed, k_t/k_n .7, no sliding", "", 1.0,
-               log2(fabs((patch[1] - patch[0]) / (patch[2] - patch[1]))), 0.1, VERIFY_ABSOLUTE,
-               why);
+    verify_source("the tangential spring lets go within a step");
+    verify_row("one less the order: patch speed, k_t/k_n .7, no sliding", "", 0.0,
+               1.0 - log2(fabs((patch[1] - patch[0]) / (patch[2] - patch[1]))), 0.1,
+               VERIFY_AT_MOST, "first order at the least");
 }
 
 int main(int argc, char **argv)
