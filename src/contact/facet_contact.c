@@ -395,7 +395,8 @@ static void add_contact(const struct step *step, int entry, const struct contact
     batch->inverse_mass[k] = spin[7];
     batch->pair[k] = pair;
     for (int h = 0; h < CONTACT_LANES; h++)
-        batch->history[h][k] = contact->history[h];
+        if (contact_lane_used(h, step->materials->full, step->ledger))
+            batch->history[h][k] = contact->history[h];
     const double relative = overlap * spin[3];
     if (relative > step->facets->overlap_max)
         step->facets->overlap_max = relative;
