@@ -29,7 +29,7 @@ static const char scene_text[] =
     "spheres:\n  - {name: grain, material: grain, radius: 0.005, packing: {%s}}\n"
     "bodies:\n  - {name: box, material: grain, geometry: {kind: box, open: top, "
     "min: [-0.07, -0.07, 0], max: [0.07, 0.07, 0.25]}}\n"
-    "domain: {leavers: ignore}\noutput: {series: {every: 1.0e+9}}\n";
+    "domain: {leavers: ignore}\nwatch: {step: 1000}\noutput: {series: {every: 1.0e+9}}\n";
 
 static struct simulation *scene_of(const struct bed_variant *variant, double damping,
                                    const char *packing)

@@ -241,7 +241,7 @@ void watch_contacts(struct watch *watch, const struct simulation *sim)
 {
     if (sim->step % WATCH_CONTACTS_EVERY != 0)
         return;
-    watch->rate = 1.0 / find_critical(sim, sim->dt);
+    watch->rate = 1.0 / find_critical(sim, sim->dt / sim->job->watch.step);
     watch->rounding = find_rounding(sim);
 }
 
@@ -349,7 +349,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
     /* What fails later in this list often follows from what fails earlier. */
     if (values[ROUNDING] > 1.0)
         fail(watch, WATCH_FAR);
-    if (sim->dt * values[RATE] > 1.0)
+    if (sim->dt * values[RATE] > sim->job->watch.step)
         fail(watch, WATCH_STEP);
     if (watch->overlap > sim->job->watch.overlap)
         fail(watch, WATCH_OVERLAP);

@@ -46,7 +46,7 @@ struct watch {
     double allowance_most;                  /* largest allowance over radius on this rank [-] */
     /* This rank's findings at a step that is looked at, else 0: they go with the next
      * reduction. */
-    double rate;     /* 1 / critical step of the present contacts, if above 1 / step [1/s] */
+    double rate;     /* 1 / critical step of the present contacts, if it fails the run [1/s] */
     double rounding; /* of places, over what contacts can bear [-] */
     /* this rank's part of the diagnosis */
     char what[160];

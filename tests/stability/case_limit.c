@@ -22,7 +22,7 @@
     "contact:\n  pairs:\n"                                                                     \
     "    - {between: [ore, ore], friction: %g, restitution: %g}\n"                             \
     "    - {between: [ore, rigid], friction: %g, restitution: %g}\n"                           \
-    "domain: {leavers: ignore}\nwatch: {overlap: 1, motion: 1, energy: 0}\n"                   \
+    "domain: {leavers: ignore}\nwatch: {overlap: 1, motion: 1, step: 1000, energy: 0}\n"       \
     "damping: %g\ngravity: [0, 0, %g]\n"
 
 static const double RADIUS = 0.01;

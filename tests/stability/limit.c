@@ -163,8 +163,6 @@ static bool is_stable(struct rest *rest, double dt)
     bool stable = true;
     for (int n = 0; n < TRIAL_STEPS && stable; n++) {
         step(&sim);
-        if (sim.watch.failure == WATCH_STEP)
-            sim.watch.failure = WATCH_FINE; /* that is what is looked for */
         stable = sim.watch.failure == WATCH_FINE &&
                  (n % 16 != 0 || kinetic_energy(&sim) < GROWN * start);
     }
