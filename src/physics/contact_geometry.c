@@ -250,7 +250,7 @@ static void add_face(struct contact_geometry_shares *shares, const struct mesh *
 {
     const struct mesh_face *face = &mesh->faces[f];
     const int *v = face->vertices;
-    double parts[4];
+    double parts[4] = {0.0, 0.0, 0.0, 0.0};
     if (face->n == 4)
         quad_parts(mesh, v, point, parts);
     else

@@ -118,8 +118,9 @@ static char *bed(struct material m, double spread)
         char name[32];
         snprintf(name, sizeof name, "s%d", k);
         const double r = RADIUS * (1.0 + spread * (2.0 * next_random(&seed) - 1.0));
-        const struct vec3 x = {(k % SIDE + 0.5) * pitch, (k / SIDE % SIDE + 0.5) * pitch,
-                               (k / (SIDE * SIDE) + 0.5) * pitch};
+        const int row = k / SIDE, layer = row / SIDE;
+        const struct vec3 x = {(k % SIDE + 0.5) * pitch, (row % SIDE + 0.5) * pitch,
+                               (layer + 0.5) * pitch};
         const struct vec3 v = {next_random(&seed) - 0.5, next_random(&seed) - 0.5, 0.0};
         char *sphere = verify_sphere(name, "ore", r, x, v, (struct vec3){0.0, 0.0, 0.0});
         fputs(sphere, out);
@@ -150,8 +151,8 @@ static char *crystal(struct material m)
             char name[32];
             snprintf(name, sizeof name, "s%d", n++);
             const double shift = 0.5 * pitch * (layer % 2);
-            const struct vec3 x = {k % side * pitch + shift, (k / side) * pitch + shift,
-                                   layer * height};
+            const int row = k / side, place = k % side;
+            const struct vec3 x = {place * pitch + shift, row * pitch + shift, layer * height};
             char *sphere = verify_sphere(name, "ore", RADIUS, x, (struct vec3){0.0, 0.0, 0.0},
                                          (struct vec3){0.0, 0.0, 0.0});
             fputs(sphere, out);

@@ -1,6 +1,7 @@
 /* See limit.h. */
 #include "limit.h"
 
+#include <dirent.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -170,6 +171,22 @@ static bool is_stable(struct rest *rest, double dt)
     return stable;
 }
 
+/* Removes a folder of files, `below` another. */
+static void remove_folder(const char *above, const char *below)
+{
+    char *folder = array_format("%s%s", above, below);
+    DIR *entries = opendir(folder);
+    CHECK(entries != NULL, "cannot open %s", folder);
+    for (const struct dirent *entry; (entry = readdir(entries)) != NULL;) {
+        char *path = array_format("%s/%s", folder, entry->d_name);
+        unlink(path); /* but for . and .. */
+        free(path);
+    }
+    closedir(entries);
+    CHECK(rmdir(folder) == 0, "cannot remove %s", folder);
+    free(folder);
+}
+
 struct limit limit_find(const char *yaml, double dt, int n_steps, enum limit_push push)
 {
     const struct comm comm = comm_world();
@@ -193,9 +210,9 @@ struct limit limit_find(const char *yaml, double dt, int n_steps, enum limit_pus
     }
     limit.step = sqrt(low * high);
     free(rest.checkpoint);
-    char *command = array_format("rm -rf '%s'", rest.folder);
-    CHECK(system(command) == 0, "cannot remove %s", rest.folder);
-    free(command);
+    remove_folder(rest.folder, "/checkpoints");
+    remove_folder(rest.folder, "/series");
+    remove_folder(rest.folder, "");
     job_clear(&rest.job);
     return limit;
 }
