@@ -336,7 +336,8 @@ static void press(const struct step *step, int k)
     struct facet_contact *contact = &step->facets->list[acting->entry];
     contact->overlap = batch->overlap[k];
     for (int h = 0; h < CONTACT_LANES; h++)
-        contact->history[h] = batch->history[h][k];
+        if (contact_lane_used(h, step->materials->full, step->ledger))
+            contact->history[h] = batch->history[h][k];
 }
 
 static void empty_batch(const struct step *step)
