@@ -11,9 +11,6 @@
  *
  * Metadata carry HDF5's own checksums, rows those of store/table.h, the rest an attribute
  * `checksum`.  A drawback: the reserved space must be there beside the older checkpoints.
- *
- * Format versions count up.  A program reads its own version and all before; of a newer one
- * it says so.
  */
 #include "store/checkpoint.h"
 
@@ -284,9 +281,10 @@ static void put_monitors(struct h5 *h5, int n, const struct checkpoint_monitor *
 static int64_t file_size(const struct checkpoint *checkpoint,
                          const struct table tables[N_TABLES])
 {
-    enum { METADATA = 1 << 17 };
+    enum { METADATA = 1 << 17, NOTE_SIZE = 2048 };
     int64_t size = METADATA + (int64_t)strlen(checkpoint->job_text) +
-                   checkpoint->n_monitors * (int64_t)sizeof *checkpoint->monitors;
+                   checkpoint->n_monitors * (int64_t)sizeof *checkpoint->monitors +
+                   checkpoint->notes.n * (int64_t)NOTE_SIZE;
     for (int k = 0; k < N_TABLES; k++)
         size += table_file_size(&tables[k]);
     return size;
@@ -306,6 +304,7 @@ static char *lay_out(const char *path, const struct checkpoint *checkpoint,
     h5_create(&h5, path);
     put_run(&h5, checkpoint, tables);
     put_monitors(&h5, checkpoint->n_monitors, totals);
+    notes_put(&checkpoint->notes, &h5);
     h5_group(&h5, "/checksums");
     for (int k = 0; k < N_TABLES; k++)
         table_declare(&tables[k], &h5);
@@ -378,10 +377,20 @@ static char *write_file(const struct comm *comm, const char *path,
     return why;
 }
 
+/* Collective. */
+static void check_notes(const struct comm *comm, const struct notes *notes)
+{
+    const int64_t sum = notes_checksum(notes);
+    int64_t extremes[2] = {sum, -sum};
+    comm_max_int(comm, extremes, 2);
+    CHECK(extremes[0] == -extremes[1], "ranks have different notes for the checkpoint");
+}
+
 int checkpoint_write(const struct comm *comm, const char *path,
                      const struct checkpoint *checkpoint)
 {
     file_survive_size_limit();
+    check_notes(comm, &checkpoint->notes);
     struct table tables[N_TABLES];
     collect(tables, comm, checkpoint);
     const int n = checkpoint->n_monitors;
@@ -513,6 +522,11 @@ static void share_header(const struct comm *comm, struct checkpoint *checkpoint,
     comm_broadcast(comm, checkpoint->monitors, n * sizeof *checkpoint->monitors);
     for (size_t i = 0; comm->rank != 0 && i < n; i++)
         checkpoint->monitors[i].sum = (struct exact_sum){0};
+    struct notes *notes = &checkpoint->notes;
+    comm_broadcast(comm, &notes->n, sizeof notes->n);
+    if (comm->rank != 0)
+        ARRAY_GROW(notes->list, notes->n, notes->capacity);
+    comm_broadcast(comm, notes->list, (size_t)notes->n * sizeof *notes->list);
 }
 
 /* Everything that one process can say about the file as a whole.  Local. */
@@ -524,6 +538,7 @@ static char *read_header(const char *path, struct checkpoint *checkpoint,
     h5_open(&h5, path);
     get_header(&h5, checkpoint);
     get_monitors(&h5, checkpoint);
+    notes_get(&checkpoint->notes, &h5);
     for (int k = 0; k < N_TABLES; k++) {
         table_measure(&tables[k], &h5);
         if (h5_get_int(&h5, "/run", counts[k]) != tables[k].n_total)
@@ -636,5 +651,6 @@ void checkpoint_clear(struct checkpoint *checkpoint)
     free(checkpoint->contacts);
     free(checkpoint->facet_contacts);
     free(checkpoint->monitors);
+    notes_clear(&checkpoint->notes);
     *checkpoint = (struct checkpoint){.spheres = spheres};
 }

@@ -14,9 +14,13 @@
  *                    by (first_id, second_id)
  *   /facet_contacts/ id, body, feature, the same of their history; sorted
  *   /monitors/       names (one a line), sums (n x 5 int64: struct exact_sum as totals)
+ *   /state/          where there is any: small named numbers (store/notes.h)
  *   /checksums/      under the same paths: CRC-32 (as zlib's) of each block of 256 rows; job,
  *                    names and sums have theirs as attribute `checksum`
  * Nothing in it depends on rank count, machine or clock (those are in the log and the series).
+ *
+ * Format versions count up: version 1 had no /state.  A program reads its own version and all
+ * before; of a newer one it says so.
  *
  * Writing: space is reserved and agreed on, the file is written under a temporary name, forced
  * to the disk, renamed, its folder forced to the disk.  Reading verifies every checksum.
@@ -30,11 +34,12 @@
 #include "base/exact_sum.h"
 #include "contact/contact_set.h"
 #include "contact/facet_contact.h"
+#include "store/notes.h"
 
 struct comm;
 struct spheres;
 
-enum { CHECKPOINT_FORMAT_VERSION = 1, CHECKPOINT_NAME_SIZE = 64 };
+enum { CHECKPOINT_FORMAT_VERSION = 2, CHECKPOINT_NAME_SIZE = 64 };
 
 struct checkpoint_monitor {
     char name[CHECKPOINT_NAME_SIZE];
@@ -55,6 +60,7 @@ struct checkpoint {
     struct facet_contact_record *facet_contacts;
     int n_monitors; /* the same names on all ranks; sums are this rank's shares */
     struct checkpoint_monitor *monitors;
+    struct notes notes; /* the same on all ranks */
 };
 
 /*

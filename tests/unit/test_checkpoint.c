@@ -2,6 +2,7 @@
  * ranks, and every damage noticed.  ranks: 1 2 3 5 / */
 #include "store/checkpoint.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -79,6 +80,14 @@ static void build_spheres(struct spheres *spheres, const struct comm *comm)
     spheres_pad(spheres);
 }
 
+static void add_notes(struct checkpoint *checkpoint)
+{
+    const double reals[] = {1.5, -0.0, 1e-300};
+    const int64_t ints[] = {INT64_MIN, 7};
+    notes_add(&checkpoint->notes, "piston.state", 3, reals);
+    notes_add_ints(&checkpoint->notes, "insertion-1", 2, ints);
+}
+
 static void build(struct checkpoint *checkpoint, struct spheres *spheres,
                   const struct comm *comm)
 {
@@ -114,6 +123,7 @@ static void build(struct checkpoint *checkpoint, struct spheres *spheres,
     for (int i = 0; i < spheres->n_owned; i++)
         for (int k = 0; k < N_MONITORS; k++)
             exact_sum_add(&checkpoint->monitors[k].sum, value(spheres->id[i], 30, k));
+    add_notes(checkpoint);
 }
 
 static void clear(struct checkpoint *checkpoint, struct spheres *spheres)
@@ -197,7 +207,8 @@ static int read_alone(const char *path, bool *same)
         strcmp(is.job_text, was.job_text) == 0 && is.n_contacts == was.n_contacts &&
         spheres_is.n_owned == spheres_was.n_owned &&
         memcmp(is.contacts, was.contacts, (size_t)is.n_contacts * sizeof *is.contacts) == 0 &&
-        is.n_facet_contacts == was.n_facet_contacts;
+        is.n_facet_contacts == was.n_facet_contacts &&
+        notes_checksum(&is.notes) == notes_checksum(&was.notes);
     for (int i = 0; *same && i < spheres_is.n_owned; i++) {
         const int j = spheres_was.n_owned - 1 - i;
         for (int f = 0; f < SPHERE_N_FIELDS; f++) {
@@ -325,6 +336,30 @@ TEST(monitors_are_totals)
     }
     clear(&checkpoint, &spheres);
     clear(&all, &all_spheres);
+    free(path);
+}
+
+TEST(notes_return)
+{
+    const struct comm comm = comm_world();
+    char *path = scratch(&comm, "notes.h5");
+    EXPECT(write_state(&comm, path) == REPORT_FINISHED);
+    struct spheres spheres;
+    spheres_init(&spheres);
+    struct checkpoint checkpoint = {.spheres = &spheres, .full = true, .ledger = true};
+    EXPECT(checkpoint_read(&comm, path, &checkpoint) == REPORT_FINISHED);
+    double reals[3], no_reals[2];
+    int64_t ints[2], no_ints[3];
+    EXPECT(notes_take(&checkpoint.notes, "piston.state", 3, reals));
+    EXPECT(reals[0] == 1.5 && reals[1] == 0.0 && signbit(reals[1]) && reals[2] == 1e-300);
+    EXPECT(notes_take_ints(&checkpoint.notes, "insertion-1", 2, ints));
+    EXPECT(ints[0] == INT64_MIN && ints[1] == 7);
+    report_init(false); /* each of these says what is missing */
+    EXPECT(!notes_take(&checkpoint.notes, "piston", 3, reals));
+    EXPECT(!notes_take(&checkpoint.notes, "piston.state", 2, no_reals));
+    EXPECT(!notes_take_ints(&checkpoint.notes, "piston.state", 3, no_ints));
+    report_init(comm.rank == 0);
+    clear(&checkpoint, &spheres);
     free(path);
 }
 
