@@ -186,7 +186,7 @@ static void tabulate(FILE *table, const struct setting *setting, int n_quantitie
     for (int k = 0; k < N_STEPS; k++) {
         struct scatter scatter[N_QUANTITIES];
         errors_of(setting, steps_tried[k], reference, scatter);
-        fprintf(table, "%s,%g,%g,%d,%.4g", setting->law->name, setting->restitution,
+        fprintf(table, "\"%s\",%g,%g,%d,%.4g", setting->law->name, setting->restitution,
                 setting->angle, steps_tried[k], 1e-3 * ns * steps_tried[k]);
         for (int q = 0; q < n_quantities; q++)
             write_scatter(table, &scatter[q]);
@@ -203,10 +203,10 @@ static struct material_pair pair_of(const struct setting *setting)
     struct simulation *sim = verify_scene(
         1e-6,
         "materials:\n  grain: {density: %g, young: %g, poisson: %g}\n"
-        "contact:\n  pairs:\n    - {between: [grain, grain], friction: %g, restitution: %g}\n"
+        "contact:\n  pairs:\n    - {between: [grain, grain], friction: %g, restitution: %g%s}\n"
         "spheres:\n%s",
         grain.density, grain.young, grain.poisson, setting->friction, setting->restitution,
-        sphere);
+        setting->law->more, sphere);
     const struct material_pair pair = sim->materials.pairs[0];
     verify_scene_free(sim);
     free(sphere);
@@ -259,8 +259,8 @@ static void tabulate_damping(FILE *table, const struct setting *setting)
                                                phase_of(p, PHASES), lagged) -
                             setting->restitution;
             const struct scatter scatter = scatter_of(errors);
-            fprintf(table, "%s,%g,%d", lagged ? "lagged" : "extrapolated", setting->restitution,
-                    steps_tried[k]);
+            fprintf(table, "%s,%s,%g,%d", setting->law->name,
+                    lagged ? "lagged" : "extrapolated", setting->restitution, steps_tried[k]);
             write_scatter(table, &scatter);
             fprintf(table, ",%.4g\n", fabs(scatter.bias));
         }
@@ -268,7 +268,16 @@ static void tabulate_damping(FILE *table, const struct setting *setting)
 
 /* ---------------------------------------------------------------------------------- main */
 
-enum { LINEAR = 3, N_VARIANTS = 6 };
+enum {
+    HERTZ,
+    HERTZ_BARE,
+    HERTZ_ROLLING,
+    HERTZ_CONSTANT,
+    LINEAR,
+    LINEAR_BARE,
+    LINEAR_ROLLING,
+    N_VARIANTS
+};
 /* About as stiff as Hertz' contact under a layer's weight. */
 #define LINEAR_BED "friction: 0.5, restitution: 0.5, law: linear, stiffness: 2.0e+4"
 static const struct bed_variant variants[N_VARIANTS] = {
@@ -277,13 +286,19 @@ static const struct bed_variant variants[N_VARIANTS] = {
      "  ledger: false\n"},
     {"hertz-mindlin, rolling", "", "friction: 0.5, restitution: 0.5, rolling_friction: 0.1",
      ""},
+    {"hertz-mindlin, rolling constant", "",
+     "friction: 0.5, restitution: 0.5, rolling_friction: 0.1, rolling: constant", ""},
     {"linear", "", LINEAR_BED, ""},
     {"linear without ledger", "", LINEAR_BED, "  ledger: false\n"},
     {"linear, rolling", "", LINEAR_BED ", rolling_friction: 0.1", ""},
 };
 
-static const struct law hertz = {"hertz", "", 0.0},
-                        linear = {"linear", ", law: linear, stiffness: 1.0e+6", 1e6};
+#define LINEAR_KEYS ", law: linear, stiffness: 1.0e+6"
+#define ROLLING     ", rolling_friction: 0.1"
+static const struct law hertz = {"hertz", "", 0.0}, linear = {"linear", LINEAR_KEYS, 1e6},
+                        hertz_rolling = {"hertz rolling", ROLLING, 0.0},
+                        hertz_constant = {"hertz constant", ROLLING ", rolling: constant", 0.0},
+                        linear_rolling = {"linear rolling", LINEAR_KEYS ROLLING, 1e6};
 
 static void write_costs(const char *work, const char *out, struct bed_cost *costs)
 {
@@ -307,32 +322,54 @@ static void write_impacts(const char *out, const struct bed_cost *costs)
     write_names(table, SPIN, quantity_names);
     for (int k = 0; k < 4; k++)
         tabulate(table, &(struct setting){&hertz, restitutions[k], 0.0, 0.0}, SPIN,
-                 costs[0].step);
+                 costs[HERTZ].step);
     for (int k = 0; k < 3; k++)
         tabulate(table, &(struct setting){&linear, restitutions[k], 0.0, 0.0}, SPIN,
                  costs[LINEAR].step);
     fclose(table);
 
-    static const double obliques[][2] = {
-        {1.0, 15.0}, {0.9, 15.0}, {0.9, 30.0}, {0.9, 50.0}, {0.9, 70.0}};
+    static const struct {
+        const struct law *law;
+        double restitution, angle;
+        int cost;
+    } obliques[] = {
+        {&hertz, 1.0, 15.0, HERTZ},
+        {&hertz, 0.9, 15.0, HERTZ},
+        {&hertz, 0.9, 30.0, HERTZ},
+        {&hertz, 0.9, 50.0, HERTZ},
+        {&hertz, 0.9, 70.0, HERTZ},
+        {&linear, 1.0, 15.0, LINEAR},
+        {&linear, 0.9, 15.0, LINEAR},
+        {&linear, 0.9, 50.0, LINEAR},
+        {&hertz_rolling, 0.9, 15.0, HERTZ_ROLLING},
+        {&hertz_rolling, 0.9, 50.0, HERTZ_ROLLING},
+        {&hertz_constant, 0.9, 15.0, HERTZ_CONSTANT},
+        {&hertz_constant, 0.9, 50.0, HERTZ_CONSTANT},
+        {&linear_rolling, 0.9, 15.0, LINEAR_ROLLING},
+        {&linear_rolling, 0.9, 50.0, LINEAR_ROLLING},
+    };
     table = open_table(out, "oblique.csv");
     fprintf(table,
             "# sphere on plane, friction .3, spin over that of rolling; errors over %d phases "
             "of first touch\n%s",
             PHASES, head);
     write_names(table, N_QUANTITIES, quantity_names);
-    for (int k = 0; k < 5; k++)
-        tabulate(table, &(struct setting){&hertz, obliques[k][0], 0.3, obliques[k][1]},
-                 N_QUANTITIES, costs[0].step);
+    for (size_t k = 0; k < sizeof obliques / sizeof *obliques; k++) {
+        const struct setting setting = {obliques[k].law, obliques[k].restitution, 0.3,
+                                        obliques[k].angle};
+        tabulate(table, &setting, N_QUANTITIES, costs[obliques[k].cost].step);
+    }
     fclose(table);
 
     table = open_table(out, "damping.csv");
     fprintf(table, "# two spheres head on; the velocity of the dashpot\n"
-                   "damping,restitution,steps");
+                   "law,damping,restitution,steps");
     fprintf(table, ",restitution_rms,restitution_low,restitution_high,restitution_bias,"
                    "restitution_bias_size\n");
     for (int k = 1; k < 4; k++)
         tabulate_damping(table, &(struct setting){&hertz, restitutions[k], 0.0, 0.0});
+    for (int k = 1; k < 3; k++)
+        tabulate_damping(table, &(struct setting){&linear, restitutions[k], 0.0, 0.0});
     fclose(table);
 }
 

@@ -353,7 +353,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
         fail(watch, WATCH_STEP);
     if (watch->overlap > sim->job->watch.overlap)
         fail(watch, WATCH_OVERLAP);
-    if (watch->motion > sim->job->watch.motion)
+    if (watch->motion > sim->job->watch.motion && !isinf(watch->motion))
         fail(watch, WATCH_MOTION);
     if (values[BAD] > 0.0 || !(spent[0] >= 0.0) || !(watch->overlap >= 0.0))
         fail(watch, WATCH_NOT_A_NUMBER);
