@@ -315,7 +315,8 @@ static const struct schema_key watch_keys[] = {
      .standard = "0.1", ABOVE_TO(0.0, 1.0), AT(struct job, watch.motion)},
     {"step", SCHEMA_NUMBER,
      "largest time step over the critical step of the present contacts; that is a bound, which "
-     "dense beds bear to exceed by a tenth to a quarter, more with strong damping",
+     "dense beds bear to exceed by a tenth to a quarter, with strong damping or rolling friction "
+     "by half and more",
      .unit = "1", .standard = "1", ABOVE_TO(0.0, 1e3), AT(struct job, watch.step)},
     {"energy", SCHEMA_NUMBER,
      "largest error of the energy balance over the energy turned over, with contact.ledger; 0: "

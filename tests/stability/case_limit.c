@@ -20,8 +20,8 @@
     "  ore: {density: 2500, young: 1.0e+8, poisson: 0.2}\n"                                    \
     "  rigid: {density: 2500, young: 1.0e+14, poisson: 0.2}\n"                                 \
     "contact:\n  pairs:\n"                                                                     \
-    "    - {between: [ore, ore], friction: %g, restitution: %g}\n"                             \
-    "    - {between: [ore, rigid], friction: %g, restitution: %g}\n"                           \
+    "    - {between: [ore, ore], friction: %g, restitution: %g%s}\n"                           \
+    "    - {between: [ore, rigid], friction: %g, restitution: %g%s}\n"                         \
     "domain: {leavers: ignore}\nwatch: {overlap: 1, motion: 1, step: 1000, energy: 0}\n"       \
     "damping: %g\ngravity: [0, 0, %g]\n"
 
@@ -29,12 +29,18 @@ static const double RADIUS = 0.01;
 
 struct material {
     double friction, restitution;
+    const char *law, *keys; /* its name, and further keys of the pairs */
 };
+
+static const char hertz[] = "Hertz", linear[] = "linear", rolling[] = "Hertz and rolling";
+/* About as stiff as Hertz's contact under gravity. */
+static const char linear_keys[] = ", law: linear, stiffness: 6.0e+4";
+static const char rolling_keys[] = ", rolling_friction: 0.5";
 
 static char *materials_text(struct material m, double damping, double gravity)
 {
-    return array_format(MATERIALS, m.friction, m.restitution, m.friction, m.restitution,
-                        damping, gravity);
+    return array_format(MATERIALS, m.friction, m.restitution, m.keys, m.friction, m.restitution,
+                        m.keys, damping, gravity);
 }
 
 static bool csv;
@@ -45,7 +51,7 @@ static struct limit find(const char *scene, const char *what, struct material m,
     const struct limit limit = limit_find(text, dt, n_steps, push);
     free(text);
     if (csv)
-        printf("%s,%s,%g,%g,%.3f,%.3e,%.5e,%.5e,%.4f,%.4f\n", scene, what, m.friction,
+        printf("%s,%s,%s,%g,%g,%.3f,%.3e,%.5e,%.5e,%.4f,%.4f\n", scene, what, m.law, m.friction,
                m.restitution, limit.partners, limit.overlap_mean, limit.bound, limit.step,
                limit.step / limit.bound, limit.bound / limit.rayleigh);
     else
@@ -177,24 +183,31 @@ int main(int argc, char **argv)
     verify_begin(argc, argv, "The step's limit", "THEORY.md (6.5)");
     const double dt = 2e-6;
     if (csv)
-        puts("scene,motion,friction,restitution,partners,overlap,bound_s,limit_s,"
+        puts("scene,motion,law,friction,restitution,partners,overlap,bound_s,limit_s,"
              "limit_over_bound,bound_over_rayleigh");
     static const double restitutions[] = {1.0, 0.9, 0.5, 0.2, 0.05};
     for (int k = 0; k < 5; k++) {
         const double e = restitutions[k];
-        const struct material smooth = {0.0, e}, rough = {10.0, e};
+        const struct material smooth = {0.0, e, hertz, ""}, rough = {10.0, e, hertz, ""};
+        const struct material spring = {0.0, e, linear, linear_keys};
         find("plane", "normal", smooth, on_plane(smooth), dt, 20000, LIMIT_PUSH_Z);
         find("plane", "tangential", rough, on_plane(rough), dt, 20000, LIMIT_PUSH_SPIN);
+        find("plane", "normal", spring, on_plane(spring), dt, 20000, LIMIT_PUSH_Z);
         find("row of 2", "normal", smooth, row(smooth, 2), dt, 20000, LIMIT_PUSH_X);
         find("row of 10", "normal", smooth, row(smooth, 10), dt, 20000, LIMIT_PUSH_X);
     }
     for (int k = 0; k < 4; k++) {
         const double e = restitutions[k];
-        const struct material smooth = {0.0, e}, rough = {0.5, e}, sticky = {10.0, e};
+        const struct material smooth = {0.0, e, hertz, ""}, rough = {0.5, e, hertz, ""},
+                              sticky = {10.0, e, hertz, ""},
+                              springs = {0.5, e, linear, linear_keys},
+                              rolls = {0.5, e, rolling, rolling_keys};
         find("crystal", "all", smooth, crystal(smooth), 5e-6, 40000, LIMIT_PUSH_ALL);
         find("crystal", "all", sticky, crystal(sticky), 5e-6, 40000, LIMIT_PUSH_ALL);
         find("bed", "all", smooth, bed(smooth, 0.2), 5e-6, 80000, LIMIT_PUSH_ALL);
         find("bed", "all", rough, bed(rough, 0.2), 5e-6, 80000, LIMIT_PUSH_ALL);
+        find("bed", "all", springs, bed(springs, 0.2), 5e-6, 80000, LIMIT_PUSH_ALL);
+        find("bed", "all", rolls, bed(rolls, 0.2), 5e-6, 80000, LIMIT_PUSH_ALL);
     }
     const int status = verify_end();
     return csv ? 0 : status;

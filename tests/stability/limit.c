@@ -60,20 +60,22 @@ static void look_at_contacts(const struct simulation *sim, struct limit *limit)
     const struct contact_list *list = &sim->contacts.now;
     double n = 0.0, sum = 0.0, ends = 0.0;
     for (int k = 0; k < list->n; k++) {
-        const double a = list->history[CONTACT_RADIUS_LANE][k];
-        const double curvature = sphere_curvature(&sim->spheres, list->first[k]) +
-                                 sphere_curvature(&sim->spheres, list->second[k]);
-        n += contact_touches(list, k);
-        ends += contact_touches(list, k) ? 2.0 : 0.0;
-        sum += 0.5 * (a * curvature) * (a * curvature);
+        if (!contact_touches(list, k))
+            continue;
+        const int i = list->first[k], j = list->second[k];
+        const double *a = sphere_position(&sim->spheres, i),
+                     *b = sphere_position(&sim->spheres, j);
+        const double x[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
+        const double radii = sphere_radius(&sim->spheres, i) + sphere_radius(&sim->spheres, j);
+        n += 1.0;
+        ends += 2.0;
+        sum += 2.0 * (1.0 - sqrt(x[0] * x[0] + x[1] * x[1] + x[2] * x[2]) / radii);
     }
     for (int k = 0; k < sim->facets.n; k++) {
         const struct facet_contact *contact = &sim->facets.list[k];
-        const double a = contact->history[CONTACT_RADIUS_LANE] *
-                         sphere_curvature(&sim->spheres, contact->sphere);
-        n += a > 0.0;
-        ends += a > 0.0;
-        sum += a * a;
+        n += contact->overlap > 0.0;
+        ends += contact->overlap > 0.0;
+        sum += contact->overlap * sphere_curvature(&sim->spheres, contact->sphere);
     }
     limit->partners = ends / sim->spheres.n_owned;
     limit->overlap_mean = sum / n;
