@@ -3,6 +3,9 @@
  *
  * Counts and masses come from the run's own samples, so they are exact; the rate is that of
  * steady.h.  Net means forward less backward, forward being along the section's normal.
+ *
+ * What a section counts apart by material and size class is treated like a section of its own,
+ * called outlet.material_ore or outlet.class_1, where asked for.
  */
 #include <math.h>
 #include <stdio.h>
@@ -30,8 +33,12 @@ struct section {
     double n_per_second; /* spheres, over the steady window */
 };
 
+enum part { PART_TOTAL, PART_MATERIAL, PART_SIZE, PART_ALL };
+static const char *const PARTS[] = {"total", "material", "size", "all", NULL};
+
 struct discharge {
     const char *run;
+    enum part by; /* what is shown beside totals */
     int n_rows, n_sections;
     double *time; /* [s] */
     struct section *sections;
@@ -86,6 +93,33 @@ static void assess(struct discharge *d, struct section *section)
     section->n_per_second = n / (steady->to - steady->from);
 }
 
+/* Is this section, or part of one, to be shown?  No name has a point in it. */
+static bool is_wanted(const struct discharge *d, const char *name)
+{
+    const char *part = strchr(name, '.');
+    if (part == NULL || d->by == PART_ALL)
+        return true;
+    return (d->by == PART_MATERIAL && strncmp(part, ".material_", 10) == 0) ||
+           (d->by == PART_SIZE && strncmp(part, ".class_", 7) == 0);
+}
+
+/* A material that bodies alone have never passes. */
+static bool is_idle_part(const struct discharge *d, const struct section *section)
+{
+    const int last = d->n_rows - 1;
+    return strchr(section->name, '.') != NULL && last >= 0 &&
+           section->count_forward[last] == 0.0 && section->count_backward[last] == 0.0;
+}
+
+static void clear_section(struct section *section)
+{
+    free(section->name);
+    free(section->count_forward);
+    free(section->count_backward);
+    free(section->mass);
+    free(section->rate);
+}
+
 /* Finds the sections among the columns.  False when a section lacks a column. */
 static bool read_sections(struct discharge *d, const struct series *series)
 {
@@ -99,9 +133,17 @@ static bool read_sections(struct discharge *d, const struct series *series)
             continue;
         }
         name[length - mark] = '\0';
+        if (!is_wanted(d, name)) {
+            free(name);
+            continue;
+        }
         struct section *section = &d->sections[d->n_sections++];
         section->name = name;
         whole = read_section(d, section, series) && whole;
+        if (whole && is_idle_part(d, section)) {
+            clear_section(section);
+            d->n_sections--;
+        }
     }
     return whole;
 }
@@ -112,8 +154,9 @@ static int read_run(struct discharge *d, const char *run)
     const int status = records_read(&series, run, "series");
     if (status != REPORT_FINISHED)
         return status;
-    *d = (struct discharge){
-        .run = run, .n_rows = series.n_rows, .time = records_column(&series, "time")};
+    d->run = run;
+    d->n_rows = series.n_rows;
+    d->time = records_column(&series, "time");
     const bool whole = d->time != NULL && read_sections(d, &series);
     series_clear(&series);
     if (whole)
@@ -125,13 +168,8 @@ static int read_run(struct discharge *d, const char *run)
 
 static void clear(struct discharge *d)
 {
-    for (int s = 0; s < d->n_sections; s++) {
-        free(d->sections[s].name);
-        free(d->sections[s].count_forward);
-        free(d->sections[s].count_backward);
-        free(d->sections[s].mass);
-        free(d->sections[s].rate);
-    }
+    for (int s = 0; s < d->n_sections; s++)
+        clear_section(&d->sections[s]);
     free(d->sections);
     free(d->time);
 }
@@ -326,14 +364,17 @@ static int show(struct discharge *d, const char *csv, const char *svg)
 int main(int argc, char **argv)
 {
     const char *csv = NULL, *svg = NULL;
+    int by = PART_TOTAL;
     const struct arguments_entry entries[] = {
+        {"by", 0, ARGUMENTS_CHOICE, &by, "WHAT",
+         "shows beside totals what sections count apart", PARTS},
         {"csv", 0, ARGUMENTS_TEXT, &csv, "FILE", "writes all samples as comma-separated values",
          NULL},
         {"svg", 0, ARGUMENTS_TEXT, &svg, "FILE", "draws mass and rate over time", NULL},
     };
     const struct arguments_page page = {
         "tremie-discharge",
-        "RUN [--csv FILE] [--svg FILE]",
+        "RUN [--by WHAT] [--csv FILE] [--svg FILE]",
         "Shows how many spheres and what mass passed each section of a run over time, and the rate with\n"
         "its 95 % confidence interval over the window in which it is steady.  RUN is the run's folder.\n"
         "\n"
@@ -347,7 +388,7 @@ int main(int argc, char **argv)
     int status = arguments_read(&page, argc, argv, &n);
     if (status != ARGUMENTS_GO_ON)
         return status;
-    struct discharge d = {0};
+    struct discharge d = {.by = (enum part)by};
     status = read_run(&d, argv[1]);
     if (status == REPORT_FINISHED)
         status = show(&d, csv, svg);

@@ -318,6 +318,38 @@ static void materials_prune(struct job *job, const bool *used)
     free(index);
 }
 
+static int compare_doubles(const void *a, const void *b)
+{
+    const double *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
+/* The radii half way between those that groups of one radius have; *n_classes of them. */
+static double *classes_between(const struct job *job, int *n_classes)
+{
+    double *radii = array_allocate((size_t)job->n_spheres, sizeof *radii);
+    int n = 0;
+    *n_classes = 0;
+    for (int g = 0; g < job->n_spheres; g++)
+        if (job->spheres[g].radius > 0.0)
+            radii[n++] = job->spheres[g].radius;
+    qsort(radii, (size_t)n, sizeof *radii, compare_doubles);
+    for (int k = 1; k < n; k++)
+        if (radii[k - 1] < radii[k])
+            radii[(*n_classes)++] = 0.5 * (radii[k - 1] + radii[k]);
+    return radii;
+}
+
+/* Gives size classes to the sections that ask for them and name none. */
+static void classes_complete(struct job *job)
+{
+    for (int s = 0; s < job->n_sections; s++) {
+        struct job_section *section = &job->sections[s];
+        if ((section->by & JOB_SPLIT_SIZE) != 0 && section->classes == NULL)
+            section->classes = classes_between(job, &section->n_classes);
+    }
+}
+
 /* Fills the job from a complete tree and frees it again when there are mistakes. */
 static bool job_fill(struct job *job, const char *path, const struct yaml_tree_node *root,
                      bool read_files, struct mistakes *mistakes)
@@ -331,8 +363,10 @@ static bool job_fill(struct job *job, const char *path, const struct yaml_tree_n
     bool *used = array_allocate((size_t)job->n_materials, sizeof *used);
     job_check(job, root, read_files, used, mistakes);
     const bool fine = mistakes->n == 0;
-    if (fine && read_files)
+    if (fine && read_files) {
         materials_prune(job, used);
+        classes_complete(job);
+    }
     if (fine)
         pairs_sort(job);
     else

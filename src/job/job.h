@@ -101,10 +101,24 @@ struct job_body {
     double start, stop;      /* [s]; stop is infinite by default */
 };
 
-/* A plane that counts what passes; forward is along the normal. */
+enum job_split { /* what counts are told apart by besides the total */
+                 JOB_SPLIT_MATERIAL = 1,
+                 JOB_SPLIT_SIZE = 2,
+};
+
+enum job_section_kind { JOB_SECTION_PLANE, JOB_SECTION_DISC, JOB_SECTION_RECTANGLE };
+
+/* A plane, or a part of one, that counts what passes; forward is along the normal. */
 struct job_section {
     char *name;
-    struct vec3 point, normal; /* the normal has length 1 */
+    enum job_section_kind kind;
+    struct vec3 point, normal; /* the centre of a disc or rectangle; the normal has length 1 */
+    double radius;             /* disc [m] */
+    struct vec3 across;        /* rectangle: along its first side, has length 1 */
+    double size[2];            /* rectangle: along `across` and along normal x across [m] */
+    int by;                    /* set of enum job_split */
+    int n_classes;
+    double *classes; /* radii between size classes, ascending [m] */
 };
 
 enum job_leavers { JOB_LEAVERS_STOP, JOB_LEAVERS_REMOVE, JOB_LEAVERS_IGNORE };

@@ -345,6 +345,36 @@ static void bodies_check(const struct check *check, bool *standing)
     }
 }
 
+/* Numbers of a list that do not ascend. */
+static void ascent_check(const struct check *check, const char *path, int n,
+                         const double *values)
+{
+    for (int k = 1; k < n; k++)
+        if (!(values[k - 1] < values[k])) {
+            mistake(check, path, "do not ascend; each above the one before is expected");
+            return;
+        }
+}
+
+static void sections_check(const struct check *check)
+{
+    for (int i = 0; i < check->job->n_sections; i++) {
+        const struct job_section *section = &check->job->sections[i];
+        char path[64];
+        PATH("sections.%d.", i);
+        if (!is_clean(check, path))
+            continue;
+        PATH("sections.%d.across", i);
+        if (section->kind == JOB_SECTION_RECTANGLE &&
+            !(vec3_norm(vec3_cross(section->normal, section->across)) > 1e-6))
+            mistake(check, path, "is along the normal; a direction in the plane is expected");
+        PATH("sections.%d.classes", i);
+        ascent_check(check, path, section->n_classes, section->classes);
+        if (section->n_classes > 0 && (section->by & JOB_SPLIT_SIZE) == 0)
+            mistake(check, path, "have no use without `by: size`; it is expected beside them");
+    }
+}
+
 static void domain_check(const struct check *check)
 {
     const struct job *job = check->job;
@@ -434,6 +464,7 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     names_check(&check, "sections", job->n_sections, job->sections, sizeof *job->sections);
     spheres_check(&check, read_files, falling);
     bodies_check(&check, standing);
+    sections_check(&check);
     domain_check(&check);
     pairs_check(&check, falling, standing);
     laws_check(&check);

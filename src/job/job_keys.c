@@ -44,6 +44,8 @@ static const char *const models[] = {"rigid", NULL};
 static const char *const packings[] = {"lattice", "csv", NULL};
 static const char *const geometries[] = {"plane", "box", "hopper", "mesh", NULL};
 static const char *const sides[] = {"x_min", "x_max", "y_min", "y_max", "bottom", "top", NULL};
+static const char *const section_kinds[] = {"plane", "disc", "rectangle", NULL};
+static const char *const splits[] = {"material", "size", NULL};
 static const char *const leavers[] = {"stop", "remove", "ignore", NULL};
 static const char *const weights[] = {"contacts", "candidates", NULL};
 static const char *const searches[] = {"auto", "all-pairs", NULL};
@@ -232,10 +234,29 @@ static const struct schema_key body_keys[] = {
 static const struct schema_key section_keys[] = {
     {"name", SCHEMA_NAME, "name of the section, used once", .required = true,
      AT(struct job_section, name)},
-    {"point", SCHEMA_NUMBER, "a point of the plane", .unit = "m", .required = true,
-     BETWEEN(-FAR, FAR), AT(struct job_section, point)},
+    {"kind", SCHEMA_CHOICE,
+     "all of a plane, or a part of it: who passes beside it is not counted",
+     .standard = "plane", .choices = section_kinds, AT(struct job_section, kind)},
+    {"point", SCHEMA_NUMBER, "a point of the plane; the centre of a disc or a rectangle",
+     .unit = "m", .required = true, BETWEEN(-FAR, FAR), AT(struct job_section, point)},
     {"normal", SCHEMA_DIRECTION, "direction that counts as forward", .required = true,
      AT(struct job_section, normal)},
+    {"radius", SCHEMA_NUMBER, "radius of the disc; centres count that pass within", .unit = "m",
+     .required = true, ABOVE_TO(0.0, FAR), .kinds = KIND(JOB_SECTION_DISC),
+     AT(struct job_section, radius)},
+    {"across", SCHEMA_DIRECTION,
+     "direction of the rectangle's first side; its part along the normal is taken off",
+     .required = true, .kinds = KIND(JOB_SECTION_RECTANGLE), AT(struct job_section, across)},
+    {"size", SCHEMA_NUMBER, "sides of the rectangle, along `across` and at right angles to it",
+     .unit = "m", .required = true, ABOVE_TO(0.0, FAR), .kinds = KIND(JOB_SECTION_RECTANGLE),
+     AT(struct job_section, size)},
+    {"by", SCHEMA_CHOICES, "what is counted apart as well: each material, each size class",
+     .standard = "[]", .choices = splits, AT(struct job_section, by)},
+    {"classes", SCHEMA_NUMBERS,
+     "radii between the size classes, ascending; with `by: size` and none given, half way "
+     "between the radii that groups and insertions of one radius have",
+     .unit = "m", ABOVE_TO(0.0, FAR), GIVEN(struct job_section, classes),
+     LIST_AT(struct job_section, classes, n_classes)},
     END};
 
 static const struct schema_key domain_keys[] = {
@@ -349,7 +370,8 @@ const struct schema_key job_keys[] = {
      LIST_AT(struct job, spheres, n_spheres)},
     {"bodies", SCHEMA_LIST, "surfaces of quads and triangles, at rest or moving as prescribed",
      UP_TO(10000.0), .inside = body_keys, LIST_AT(struct job, bodies, n_bodies)},
-    {"sections", SCHEMA_LIST, "planes that count what passes through them", UP_TO(60.0),
+    {"sections", SCHEMA_LIST,
+     "planes, discs and rectangles that count what passes through them", UP_TO(60.0),
      .inside = section_keys, LIST_AT(struct job, sections, n_sections)},
     {"domain", SCHEMA_GROUP, "the region that spheres may be in", .inside = domain_keys},
     {"decomposition", SCHEMA_GROUP, "how the work is shared among ranks; changes no result",

@@ -212,6 +212,9 @@ const char *schema_expected(const struct schema_key *key, char text[SCHEMA_EXPEC
         snprintf(text, SCHEMA_EXPECTED, "a list of the names of %zu materials",
                  n_components(key));
         return text;
+    case SCHEMA_NUMBERS:
+        snprintf(text, SCHEMA_EXPECTED, "a list, each %s%s,", units_name(key->unit), bounds);
+        return text;
     case SCHEMA_POINTS:
         return "a list of points [x, y, z] with lengths";
     case SCHEMA_FACETS:
@@ -469,6 +472,17 @@ static void store_list(const struct item *item, void *list, int n)
     memcpy(item->into + item->key->count, &n, sizeof n);
 }
 
+static void number_list_read(const struct item *item)
+{
+    if (!has_kind(item, item->node, YAML_TREE_LIST))
+        return;
+    double *values = array_allocate((size_t)item->node->n, sizeof *values);
+    int n = 0;
+    for (const struct yaml_tree_node *node = item->node->first; node != NULL; node = node->next)
+        number_read(item, node, item->key->unit, &values[n++]);
+    store_list(item, values, n);
+}
+
 static void points_read(const struct item *item)
 {
     if (!has_kind(item, item->node, YAML_TREE_LIST))
@@ -616,6 +630,9 @@ static void value_read(const struct item *item)
     case SCHEMA_REFERENCE:
         references_read(item, into);
         break;
+    case SCHEMA_NUMBERS:
+        number_list_read(item);
+        break;
     case SCHEMA_POINTS:
         points_read(item);
         break;
@@ -665,7 +682,9 @@ static int kind_find(const struct schema_key *table, const struct yaml_tree_node
     if (key->name == NULL)
         return 0;
     const struct yaml_tree_node *kind = yaml_tree_find(node, "kind");
-    return kind == NULL || kind->kind != YAML_TREE_SCALAR ? -1 : choice_find(key, kind->text);
+    if (kind == NULL)
+        return key->standard != NULL ? choice_find(key, key->standard) : -1;
+    return kind->kind != YAML_TREE_SCALAR ? -1 : choice_find(key, kind->text);
 }
 
 static bool applies(const struct schema_key *key, int kind)
@@ -785,8 +804,8 @@ void schema_clear(const struct schema_key *table, void *from)
                 free(*(char **)element);
         }
         if (list || key->type == SCHEMA_TEXT || key->type == SCHEMA_NAME ||
-            key->type == SCHEMA_FILE || key->type == SCHEMA_POINTS ||
-            key->type == SCHEMA_FACETS) {
+            key->type == SCHEMA_FILE || key->type == SCHEMA_NUMBERS ||
+            key->type == SCHEMA_POINTS || key->type == SCHEMA_FACETS) {
             free(*(void **)place);
             *(void **)place = NULL;
         }

@@ -28,6 +28,7 @@ enum schema_type {
     SCHEMA_CHOICE,    /* an enum: index into `choices`; with size 0 only checked */
     SCHEMA_CHOICES,   /* int: a set of bits 1 << index into `choices` */
     SCHEMA_REFERENCE, /* int: index of a name in the reader's list, or a list of as many */
+    SCHEMA_NUMBERS,   /* double * and a count: a list of numbers */
     SCHEMA_POINTS,    /* struct vec3 * and a count: a list of [x, y, z] */
     SCHEMA_FACETS,    /* int (*)[4] and a count: a list of 3 or 4 indices, the fourth else -1 */
     SCHEMA_GROUP,     /* a mapping whose values go to the same struct */

@@ -148,6 +148,10 @@ static void value_write(const struct page *page, const struct schema_key *key, c
     case SCHEMA_CHOICES:
         choices_write(out, key->choices, *(const int *)place);
         break;
+    case SCHEMA_NUMBERS:
+        doubles_write(out, *(double *const *)place,
+                      (size_t) * (const int *)(const void *)(from + key->count));
+        break;
     case SCHEMA_POINTS:
         points_write(page, *(struct vec3 *const *)place,
                      *(const int *)(const void *)(from + key->count));

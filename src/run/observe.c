@@ -71,14 +71,11 @@ void observe_init(struct observe *observe, const struct simulation *sim)
     }
     for (int s = 0; s < sim->sections.n; s++) {
         const char *name = sim->sections.list[s].name;
-        series_add_column(table, "1", "spheres that passed along the normal",
-                          "%s.count_forward", name);
-        series_add_column(table, "1", "spheres that passed against the normal",
-                          "%s.count_backward", name);
-        series_add_column(table, "kg", "mass that passed along the normal", "%s.mass_forward",
-                          name);
-        series_add_column(table, "kg", "mass that passed against the normal",
-                          "%s.mass_backward", name);
+        const struct tally *passed = sim->sections.counts[s].passed;
+        tally_add_columns(&passed[0].split, sim->job, table, name, "_forward",
+                          "that passed along the normal");
+        tally_add_columns(&passed[1].split, sim->job, table, name, "_backward",
+                          "that passed against the normal");
     }
 }
 
@@ -298,11 +295,9 @@ static int add_body_values(struct simulation *sim, double *row, int n, double n_
 static int add_section_values(struct simulation *sim, double *row, int n)
 {
     for (int s = 0; s < sim->sections.n; s++) {
-        const struct sections_count *count = &sim->sections.counts[s];
-        row[n++] = total_of(sim, &count->number[0]);
-        row[n++] = total_of(sim, &count->number[1]);
-        row[n++] = total_of(sim, &count->mass[0]);
-        row[n++] = total_of(sim, &count->mass[1]);
+        const struct tally *passed = sim->sections.counts[s].passed;
+        n = tally_totals(&passed[0], sim->comm, row, n);
+        n = tally_totals(&passed[1], sim->comm, row, n);
     }
     return n;
 }
@@ -368,6 +363,20 @@ static void add_monitor(struct observe_monitor **monitors, int *n, int *capacity
     monitor->sum = sum;
 }
 
+/* Part 0 as section_0.count_forward, part 2 as section_0.2.count_forward. */
+static void add_tally(struct observe_monitor **monitors, int *n, int *capacity,
+                      const struct tally *tally, const char *owner, const char *suffix)
+{
+    for (int part = 0; part < tally->n_parts; part++) {
+        char whose[48], what[32];
+        snprintf(whose, sizeof whose, part > 0 ? "%s.%d" : "%s", owner, part);
+        snprintf(what, sizeof what, "count%s", suffix);
+        add_monitor(monitors, n, capacity, &tally->number[part], whose, what);
+        snprintf(what, sizeof what, "mass%s", suffix);
+        add_monitor(monitors, n, capacity, &tally->mass[part], whose, what);
+    }
+}
+
 int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
 {
     static const char *const totals[OBSERVE_N_TOTALS] = {
@@ -390,13 +399,11 @@ int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
         add_monitor(monitors, &n, &capacity, &load->work, owner, "work");
     }
     for (int s = 0; s < sim->sections.n; s++) {
-        struct sections_count *count = &sim->sections.counts[s];
+        const struct tally *passed = sim->sections.counts[s].passed;
         char owner[32];
         snprintf(owner, sizeof owner, "section_%d", s);
-        add_monitor(monitors, &n, &capacity, &count->number[0], owner, "count_forward");
-        add_monitor(monitors, &n, &capacity, &count->number[1], owner, "count_backward");
-        add_monitor(monitors, &n, &capacity, &count->mass[0], owner, "mass_forward");
-        add_monitor(monitors, &n, &capacity, &count->mass[1], owner, "mass_backward");
+        add_tally(monitors, &n, &capacity, &passed[0], owner, "_forward");
+        add_tally(monitors, &n, &capacity, &passed[1], owner, "_backward");
     }
     return n;
 }

@@ -1,6 +1,8 @@
 /* See sections.h. */
 #include "run/sections.h"
 
+#include <math.h>
+#include <stdbool.h>
 #include <stdlib.h>
 
 #include "base/array.h"
@@ -11,10 +13,21 @@ void sections_init(struct sections *sections, const struct job *job)
 {
     *sections = (struct sections){.n = job->n_sections, .list = job->sections};
     sections->counts = array_allocate((size_t)job->n_sections, sizeof *sections->counts);
+    for (int s = 0; s < job->n_sections; s++) {
+        const struct job_section *section = &job->sections[s];
+        const struct tally_split split =
+            tally_split(job, section->by, section->n_classes, section->classes);
+        for (int way = 0; way < 2; way++)
+            tally_init(&sections->counts[s].passed[way], &split);
+    }
 }
 
 void sections_clear(struct sections *sections)
 {
+    for (int s = 0; s < sections->n; s++) {
+        tally_clear(&sections->counts[s].passed[0]);
+        tally_clear(&sections->counts[s].passed[1]);
+    }
     free(sections->counts);
     free(sections->near);
     *sections = (struct sections){0};
@@ -26,6 +39,32 @@ static double distance(const struct job_section *section, const double *x)
     const struct vec3 offset = {x[0] - section->point.x, x[1] - section->point.y,
                                 x[2] - section->point.z};
     return vec3_dot(offset, section->normal);
+}
+
+/* Where the centre, which is `past` beyond the plane along the normal, went through it; its
+ * step ended with velocity v. [m] */
+static struct vec3 passage(const struct job_section *section, const double *x, const double *v,
+                           double past)
+{
+    const struct vec3 place = {x[0], x[1], x[2]}, velocity = {v[0], v[1], v[2]};
+    const double speed = vec3_dot(velocity, section->normal);
+    /* Rounding may have brought it across against its velocity: then it is there already. */
+    const bool went = (past > 0.0 && speed > 0.0) || (past < 0.0 && speed < 0.0);
+    return went ? vec3_axpy(place, -(past / speed), velocity) : place;
+}
+
+/* Does the part of the plane that counts hold this place? */
+static bool holds(const struct job_section *section, struct vec3 place)
+{
+    const struct vec3 offset = vec3_sub(place, section->point);
+    if (section->kind == JOB_SECTION_DISC)
+        return vec3_dot(offset, offset) <= section->radius * section->radius;
+    /* `across` may lean towards the normal: the offset does not, so its length is all that
+     * must be put right. */
+    const struct vec3 upwards = vec3_cross(section->normal, section->across);
+    const double length = vec3_norm(upwards);
+    return fabs(vec3_dot(offset, section->across)) <= 0.5 * section->size[0] * length &&
+           fabs(vec3_dot(offset, upwards)) <= 0.5 * section->size[1] * length;
 }
 
 void sections_begin(const struct sections *sections, struct spheres *spheres, int i)
@@ -57,12 +96,14 @@ void sections_pass(struct sections *sections, struct spheres *spheres)
     for (int k = 0; k < sections->n_near; k++) {
         const int i = sections->near[k].sphere, s = sections->near[k].section;
         const int64_t bit = (int64_t)1 << s;
-        const int forward = distance(&sections->list[s], sphere_position(spheres, i)) > 0.0;
+        const struct job_section *section = &sections->list[s];
+        const double *x = sphere_position(spheres, i), past = distance(section, x);
+        const bool forward = past > 0.0;
         if (forward == ((spheres->sides[i] & bit) != 0))
             continue;
         spheres->sides[i] ^= bit;
-        struct sections_count *count = &sections->counts[s];
-        exact_sum_add(&count->number[forward ? 0 : 1], 1.0);
-        exact_sum_add(&count->mass[forward ? 0 : 1], 1.0 / sphere_inverse_mass(spheres, i));
+        if (section->kind == JOB_SECTION_PLANE ||
+            holds(section, passage(section, x, sphere_velocity(spheres, i), past)))
+            tally_add(&sections->counts[s].passed[forward ? 0 : 1], spheres, i);
     }
 }

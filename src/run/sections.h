@@ -1,14 +1,17 @@
 /*
- * Sections: planes that count what passes through them, each way, by number and mass.
+ * Sections: planes, discs and rectangles that count what passes through them, each way, by
+ * number and mass, in all and apart by material and size class.
  *
  * A sphere passes when its centre's side of the plane changes; sides are state (a bit a
- * section).  Only spheres that can reach a plane before the next search are looked at: a saving
- * that changes no count.
+ * section).  A disc or a rectangle counts only what passes within it: the place of the passage
+ * follows from the place and velocity after the step, along which the sphere has just moved.
+ * Only spheres that can reach a plane before the next search are looked at: a saving that
+ * changes no count.
  */
 #ifndef TREMIE_RUN_SECTIONS_H
 #define TREMIE_RUN_SECTIONS_H
 
-#include "base/exact_sum.h"
+#include "run/tally.h"
 
 struct job;
 struct job_section;
@@ -16,8 +19,7 @@ struct spheres;
 
 /* Passages forward (along the normal) and backward. */
 struct sections_count {
-    struct exact_sum number[2];
-    struct exact_sum mass[2]; /* [kg] */
+    struct tally passed[2];
 };
 
 struct sections {

@@ -57,7 +57,7 @@ spheres:
 bodies:
   - {name: bin, material: steel, geometry: {kind: box, open: top, min: [-0.1, -0.1, 0], max: [0.1, 0.1, 0.2]}}
 sections:
-  - {name: middle, point: [0, 0, 0.09], normal: [0, 0, -1]}
+  - {name: middle, point: [0, 0, 0.09], normal: [0, 0, -1], by: [material, size], classes: [0.01]}
 checkpoint: {every: {steps: 5000}, keep: 3}
 output: {series: {every: 0.002}}
 END
@@ -111,6 +111,16 @@ total=$(sed -n 's/^total: \([0-9]*\) spheres net.*/\1/p' said)
 try 1 "$bin/tremie-discharge" bare
 says "has no section"
 result discharge
+
+try 0 "$bin/tremie-discharge" one --by all --csv parts.csv --svg parts.svg
+says "section middle" "section middle.material_ore" "section middle.class_2"
+# Nothing of steel and nothing below 0.01 m has passed.
+grep -qE 'middle.(material_steel|class_1)' said && why+=" shows what never passed;"
+awk -F , 'NR > 1 && ($2 != $6 || $4 != $8 || $2 != $10) { bad = 1 } END { exit bad }' parts.csv ||
+    why+=" parts are not the whole;"
+try 0 "$bin/tremie-discharge" one --by size
+grep -q material said && why+=" shows materials, too;"
+result "discharge by material and size"
 
 # ------------------------------------------------------------------------------- runstats
 
