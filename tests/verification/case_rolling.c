@@ -25,11 +25,41 @@ struct law {
 static const struct law laws[] = {{"Hertz", "", 0.0},
                                   {"linear", ", law: linear, stiffness: 1.0e+5", 1e5}};
 
+static double rolls(const struct simulation *sim)
+{
+    return verify_velocity(sim, 0).x;
+}
+
+static double turns(const struct simulation *sim)
+{
+    return verify_spin(sim, 0).z;
+}
+
+/* A speed that falls evenly to nothing: how fast in the middle, and when all but gone. */
+static void fade(struct simulation *sim, const char *which,
+                 double (*speed)(const struct simulation *), double slowing, const char *unit)
+{
+    char name[128];
+    const double first = speed(sim), stops = first / slowing;
+    const int quarter = (int)(0.25 * stops / resting_step);
+    verify_steps(sim, quarter);
+    const double before = speed(sim);
+    verify_steps(sim, 2 * quarter);
+    snprintf(name, sizeof name, "%s: deceleration", which);
+    verify_row(name, unit, slowing, (before - speed(sim)) / (2.0 * quarter * resting_step),
+               1e-6, VERIFY_RELATIVE, "uniform; what is left of the first swing");
+    for (int k = 0; k < 2 * quarter && speed(sim) > 0.01 * first; k++)
+        verify_steps(sim, 1);
+    snprintf(name, sizeof name, "%s: time to a hundredth of the speed", which);
+    verify_row(name, "s", 0.99 * stops, (double)sim->step * resting_step, 1e-3, VERIFY_RELATIVE,
+               "the first swing of the springs, 1 ms");
+}
+
 /* Deceleration in the middle of rolling to a stop, when it stops, and what moves then. */
 static void roll_out(const struct law *law, const char *kind, double mu_r)
 {
     char more[160], name[128];
-    const double speed = 0.2, g = resting_gravity;
+    const double speed = 0.2;
     snprintf(more, sizeof more, "%s, rolling_friction: %.17g, rolling: %s", law->more, mu_r,
              kind);
     struct simulation *sim =
@@ -38,25 +68,8 @@ static void roll_out(const struct law *law, const char *kind, double mu_r)
                                         .stiffness = law->stiffness,
                                         .speed = speed,
                                         .spin = {0.0, speed / resting_radius, 0.0}});
-    const double stops = 7.0 * speed / (5.0 * mu_r * g);
-    const int quarter = (int)(0.25 * stops / resting_step);
-    verify_steps(sim, quarter);
-    const double u1 = verify_velocity(sim, 0).x;
-    verify_steps(sim, 2 * quarter);
-    const double u2 = verify_velocity(sim, 0).x;
-    snprintf(name, sizeof name, "%s, %s, mu_r %g: deceleration", law->name, kind, mu_r);
-    verify_row(name, "m/s2", 5.0 / 7.0 * mu_r * g, (u1 - u2) / (2.0 * quarter * resting_step),
-               1e-6, VERIFY_RELATIVE, "uniform; what is left of the first swing");
-    double at = 0.0;
-    while (at == 0.0) {
-        verify_steps(sim, 1);
-        if (verify_velocity(sim, 0).x <= 0.01 * speed)
-            at = (double)sim->step * resting_step;
-    }
-    snprintf(name, sizeof name, "%s, %s, mu_r %g: time to a hundredth of the speed", law->name,
-             kind, mu_r);
-    verify_row(name, "s", 0.99 * stops, at, 1e-3, VERIFY_RELATIVE,
-               "the first swing of the springs, 1 ms");
+    snprintf(name, sizeof name, "%s, %s, mu_r %g", law->name, kind, mu_r);
+    fade(sim, name, rolls, 5.0 / 7.0 * mu_r * resting_gravity, "m/s2");
     verify_steps(sim, 20000);
     const double x = verify_position(sim, 0).x;
     verify_steps(sim, 100000);
@@ -110,29 +123,12 @@ static void incline_constant(double mu_r, double degrees)
 static void twist(const struct law *law, double mu_t)
 {
     char more[160], name[128];
-    const double spin = 50.0, g = resting_gravity;
+    const double spin = 50.0;
     snprintf(more, sizeof more, "%s, twisting_friction: %.17g", law->more, mu_t);
     struct simulation *sim = resting_scene(&(struct resting){
         .friction = 0.5, .more = more, .stiffness = law->stiffness, .spin = {0.0, 0.0, spin}});
-    const double stops = 0.4 * resting_radius * spin / (mu_t * g);
-    const int quarter = (int)(0.25 * stops / resting_step);
-    verify_steps(sim, quarter);
-    const double w1 = verify_spin(sim, 0).z;
-    verify_steps(sim, 2 * quarter);
-    snprintf(name, sizeof name, "%s, mu_t %g: angular deceleration", law->name, mu_t);
-    verify_row(name, "rad/s2", 2.5 * mu_t * g / resting_radius,
-               (w1 - verify_spin(sim, 0).z) / (2.0 * quarter * resting_step), 1e-6,
-               VERIFY_RELATIVE, "uniform; what is left of the first swing");
-    double at = 0.0;
-    while (at == 0.0) {
-        verify_steps(sim, 1);
-        if (verify_spin(sim, 0).z <= 0.01 * spin)
-            at = (double)sim->step * resting_step;
-    }
-    snprintf(name, sizeof name, "%s, mu_t %g: time to a hundredth of the spin", law->name,
-             mu_t);
-    verify_row(name, "s", 0.99 * stops, at, 1e-3, VERIFY_RELATIVE,
-               "the first swing of the springs, 1 ms");
+    snprintf(name, sizeof name, "%s, mu_t %g", law->name, mu_t);
+    fade(sim, name, turns, 2.5 * mu_t * resting_gravity / resting_radius, "rad/s2");
     verify_steps(sim, 40000);
     snprintf(name, sizeof name, "%s, mu_t %g: spin .2 s after it stopped", law->name, mu_t);
     verify_row(name, "rad/s", 0.0, fabs(verify_spin(sim, 0).z), 1e-9 * spin, VERIFY_AT_MOST,
