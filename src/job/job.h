@@ -38,13 +38,57 @@ struct job_pair {
     double twisting_friction; /* [-] */
 };
 
+enum job_region_kind {
+    JOB_REGION_BOX,
+    JOB_REGION_CYLINDER,
+    JOB_REGION_SPHERE,
+    JOB_REGION_INSIDE
+};
+
+/* A part of space, at rest. */
+struct job_region {
+    bool given;
+    enum job_region_kind kind;
+    struct vec3 min, max; /* box [m] */
+    struct vec3 from, to; /* cylinder: the ends of its axis [m] */
+    struct vec3 centre;   /* sphere [m] */
+    double radius;        /* cylinder, sphere [m] */
+    char *body;           /* inside: of this body's closed surface, as it is at time 0 */
+};
+
+enum job_sizes_kind {
+    JOB_SIZES_LIST,
+    JOB_SIZES_UNIFORM,
+    JOB_SIZES_NORMAL,
+    JOB_SIZES_LOGNORMAL,
+    JOB_SIZES_TABLE
+};
+enum job_sizes_by { JOB_SIZES_BY_NUMBER, JOB_SIZES_BY_MASS };
+
+struct job_size {
+    double radius; /* [m] */
+    double share;  /* list: of this radius; table: of all radii up to this one */
+};
+
+/* A distribution of radii (THEORY.md, Sizes). */
+struct job_sizes {
+    bool given;
+    enum job_sizes_kind kind;
+    enum job_sizes_by by;   /* what the shares are shares of */
+    double min, max;        /* uniform, normal, lognormal: cut off there [m] */
+    double mean, deviation; /* normal, lognormal: before they are cut off [m] */
+    int n;
+    struct job_size *list; /* list, table */
+};
+
 enum job_packing { JOB_PACKING_LATTICE, JOB_PACKING_CSV };
 
 /* A group of spheres.  Ids run through the groups in the order of the file. */
 struct job_spheres {
     char *name;
     int material;
-    double radius;        /* [m]; for CSV without a radius column */
+    double radius; /* [m]; for CSV without a radius column; 0 with sizes */
+    struct job_sizes sizes;
     struct vec3 velocity; /* initial [m/s] */
     struct vec3 spin;     /* initial angular velocity [rad/s] */
     enum job_packing packing;
@@ -134,6 +178,7 @@ struct job {
         double step;   /* [s]; 0 means auto */
         double safety; /* step: auto takes this share of the critical step */
     } time;
+    int64_t seed;        /* of all random numbers */
     struct vec3 gravity; /* [m/s2] */
     double damping;      /* mass-proportional: force = -damping * m * v [1/s] */
     int n_materials, n_pairs, n_spheres, n_bodies, n_sections;

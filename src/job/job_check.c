@@ -14,6 +14,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/elementary.h"
 #include "base/report.h"
 #include "job/job.h"
 #include "job/schema.h"
@@ -213,22 +214,112 @@ static void csv_check(const struct check *check, int i, bool *group)
         fclose(in);
 }
 
+/* ------------------------------------------------------------------------------- regions,
+ * sizes */
+
+/* What the schema cannot know of a region at this path ("spheres.0.packing.region"). */
+__attribute__((unused)) static void region_check(const struct check *check, const char *path,
+                                                 const struct job_region *region)
+{
+    const struct job *job = check->job;
+    const struct vec3 along = vec3_sub(region->to, region->from);
+    bool found = false;
+    if (region->kind == JOB_REGION_BOX &&
+        !(region->min.x < region->max.x && region->min.y < region->max.y &&
+          region->min.z < region->max.z))
+        mistake(check, path,
+                "has a max that is not above min in x, y and z; a greater corner "
+                "is expected");
+    if (region->kind == JOB_REGION_CYLINDER && !(vec3_norm(along) > 0.0))
+        mistake(check, path, "has an axis without length; two different ends are expected");
+    for (int b = 0; region->kind == JOB_REGION_INSIDE && b < job->n_bodies; b++)
+        found = found || strcmp(job->bodies[b].name, region->body) == 0;
+    if (region->kind == JOB_REGION_INSIDE && !found)
+        mistake(check, path, "names '%s', which is no body; the name of a body is expected",
+                region->body);
+}
+
+static void radii_check(const struct check *check, const char *path,
+                        const struct job_sizes *sizes)
+{
+    double sum = 0.0;
+    bool ascends = true;
+    for (int k = 0; k < sizes->n; k++) {
+        const struct job_size *size = &sizes->list[k];
+        sum += size->share;
+        ascends = ascends &&
+                  (k == 0 || (size->radius > size[-1].radius && size->share >= size[-1].share));
+    }
+    if (sizes->kind == JOB_SIZES_LIST && !(sum > 0.0))
+        mistake(check, path, "have no shares above 0; at least one is expected");
+    if (sizes->kind == JOB_SIZES_TABLE && !ascends)
+        mistake(check, path,
+                "do not ascend in radius and share; a cumulative curve is expected");
+    else if (sizes->kind == JOB_SIZES_TABLE &&
+             (sizes->n < 2 || sizes->list[0].share != 0.0 ||
+              !(fabs(sizes->list[sizes->n - 1].share - 1.0) <= 1e-9)))
+        mistake(check, path,
+                "do not lead from share 0 to share 1; a whole cumulative curve is "
+                "expected");
+}
+
+/* Further from the mean there is less than a sphere in 1e9. */
+static const double DEVIATIONS = 6.0;
+
+/* What the schema cannot know of sizes at this path. */
+static void sizes_check(const struct check *check, const char *path,
+                        const struct job_sizes *sizes)
+{
+    char inner[80];
+    if (sizes->kind == JOB_SIZES_LIST || sizes->kind == JOB_SIZES_TABLE) {
+        snprintf(inner, sizeof inner, "%s.radii", path);
+        radii_check(check, inner, sizes);
+        return;
+    }
+    snprintf(inner, sizeof inner, "%s.max", path);
+    if (!(sizes->min < sizes->max))
+        mistake(check, inner, "is not above min; a greater radius is expected");
+    const double share = sizes->deviation / sizes->mean;
+    const double variance =
+        elementary_log(1.0 + share * share); /* of the logarithm    (THEORY.md: S.3) */
+    const double wide = DEVIATIONS * sqrt(variance);
+    const bool normal = sizes->kind == JOB_SIZES_NORMAL;
+    const double low = normal ? sizes->mean - DEVIATIONS * sizes->deviation
+                              : sizes->mean * elementary_exp(-0.5 * variance - wide);
+    const double high = normal ? sizes->mean + DEVIATIONS * sizes->deviation
+                               : sizes->mean * elementary_exp(wide - 0.5 * variance);
+    snprintf(inner, sizeof inner, "%s.mean", path);
+    if (sizes->kind != JOB_SIZES_UNIFORM && !(sizes->min <= high && sizes->max >= low))
+        mistake(
+            check, inner,
+            "lies so far from min and max that hardly a sphere would be left; limits within "
+            "six deviations of it are expected");
+}
+
 /* ------------------------------------------------------------------------------- spheres,
  * bodies */
+
+/* The greatest radius that a group may have. */
+static double greatest_radius(const struct job_spheres *spheres)
+{
+    double most = spheres->sizes.max;
+    if (!spheres->sizes.given)
+        return spheres->radius;
+    for (int k = 0; k < spheres->sizes.n; k++)
+        most = spheres->sizes.list[k].radius > most ? spheres->sizes.list[k].radius : most;
+    return most;
+}
 
 static void lattice_check(const struct check *check, int i)
 {
     const struct job_spheres *spheres = &check->job->spheres[i];
-    const double diameter = 2.0 * spheres->radius;
+    const double diameter = 2.0 * greatest_radius(spheres);
     char path[64], number[SCHEMA_DOUBLE];
-    PATH("spheres.%d.radius", i);
-    if (spheres->radius == 0.0) {
-        mistake(check, path, "is missing; a length above 0 m is expected");
-        return;
-    }
     PATH("spheres.%d.packing.spacing", i);
     if (spheres->spacing < diameter * (1.0 - 1e-12))
-        mistake(check, path, "makes spheres overlap; at least two radii, %s m, are expected",
+        mistake(check, path,
+                "makes spheres overlap; at least two of the greatest radii, %s m, are "
+                "expected",
                 schema_double(number, diameter));
     PATH("spheres.%d.packing.size", i);
     if (spheres->size[0] < diameter * (1.0 - 1e-12) ||
@@ -236,6 +327,28 @@ static void lattice_check(const struct check *check, int i)
         mistake(check, path,
                 "is narrower than a sphere; at least two radii, %s m, are expected",
                 schema_double(number, diameter));
+}
+
+/* A group has a radius or sizes; a CSV file may have the radii. */
+static bool radii_are_fine(const struct check *check, int i)
+{
+    const struct job_spheres *spheres = &check->job->spheres[i];
+    const bool in_file = spheres->packing == JOB_PACKING_CSV;
+    const int n_before = check->mistakes->n;
+    char path[64];
+    PATH("spheres.%d.sizes", i);
+    if (spheres->sizes.given && in_file)
+        mistake(check, path,
+                "do not go with a packing from a file; its column radius_m, or "
+                "radius, is expected");
+    else if (spheres->sizes.given && spheres->radius > 0.0)
+        mistake(check, path, "are given besides a radius; one of the two is expected");
+    else if (spheres->sizes.given)
+        sizes_check(check, path, &spheres->sizes);
+    PATH("spheres.%d.radius", i);
+    if (!in_file && !spheres->sizes.given && spheres->radius == 0.0)
+        mistake(check, path, "is missing; a length above 0 m, or sizes, is expected");
+    return check->mistakes->n == n_before;
 }
 
 static void spheres_check(const struct check *check, bool read_files, bool *falling)
@@ -248,7 +361,7 @@ static void spheres_check(const struct check *check, bool read_files, bool *fall
         if (!is_clean(check, path) || !is_material(check, job->spheres[i].material))
             continue;
         check->used[job->spheres[i].material] = true; /* even where a CSV file names others */
-        if (job->spheres[i].packing == JOB_PACKING_LATTICE)
+        if (radii_are_fine(check, i) && job->spheres[i].packing == JOB_PACKING_LATTICE)
             lattice_check(check, i);
         if (job->spheres[i].packing == JOB_PACKING_CSV && read_files)
             csv_check(check, i, falling);

@@ -42,6 +42,10 @@ static const char *const pair_laws[] = {"hertz-mindlin", "linear", "default", NU
 static const char *const rollings[] = {"spring", "constant", NULL};
 static const char *const models[] = {"rigid", NULL};
 static const char *const packings[] = {"lattice", "csv", NULL};
+static const char *const region_kinds[] = {"box", "cylinder", "sphere", "inside", NULL};
+static const char *const sizes_kinds[] = {"list",      "uniform", "normal",
+                                          "lognormal", "table",   NULL};
+static const char *const sizes_bys[] = {"number", "mass", NULL};
 static const char *const geometries[] = {"plane", "box", "hopper", "mesh", NULL};
 static const char *const sides[] = {"x_min", "x_max", "y_min", "y_max", "bottom", "top", NULL};
 static const char *const section_kinds[] = {"plane", "disc", "rectangle", NULL};
@@ -123,6 +127,67 @@ static const struct schema_key contact_keys[] = {
      UP_TO(JOB_KEYS_MAX_PAIRS), .inside = pair_keys, LIST_AT(struct job, pairs, n_pairs)},
     END};
 
+static const struct schema_key region_keys[] __attribute__((unused)) = {
+    {"kind", SCHEMA_CHOICE, "the shape", .required = true, .choices = region_kinds,
+     AT(struct job_region, kind)},
+    {"min", SCHEMA_NUMBER, "least corner", .unit = "m", .required = true, BETWEEN(-FAR, FAR),
+     .kinds = KIND(JOB_REGION_BOX), AT(struct job_region, min)},
+    {"max", SCHEMA_NUMBER, "greatest corner", .unit = "m", .required = true, BETWEEN(-FAR, FAR),
+     .kinds = KIND(JOB_REGION_BOX), AT(struct job_region, max)},
+    {"from", SCHEMA_NUMBER, "one end of the axis", .unit = "m", .required = true,
+     BETWEEN(-FAR, FAR), .kinds = KIND(JOB_REGION_CYLINDER), AT(struct job_region, from)},
+    {"to", SCHEMA_NUMBER, "its other end", .unit = "m", .required = true, BETWEEN(-FAR, FAR),
+     .kinds = KIND(JOB_REGION_CYLINDER), AT(struct job_region, to)},
+    {"centre", SCHEMA_NUMBER, "centre", .unit = "m", .required = true, BETWEEN(-FAR, FAR),
+     .kinds = KIND(JOB_REGION_SPHERE), AT(struct job_region, centre)},
+    {"radius", SCHEMA_NUMBER, "radius", .unit = "m", .required = true, ABOVE_TO(0.0, FAR),
+     .kinds = KIND(JOB_REGION_CYLINDER) | KIND(JOB_REGION_SPHERE),
+     AT(struct job_region, radius)},
+    {"body", SCHEMA_NAME,
+     "a body whose surface is closed: the region is its inside, as it is at time 0",
+     .required = true, .kinds = KIND(JOB_REGION_INSIDE), AT(struct job_region, body)},
+    END};
+
+#define WITH_LIMITS                                                                            \
+    (KIND(JOB_SIZES_UNIFORM) | KIND(JOB_SIZES_NORMAL) | KIND(JOB_SIZES_LOGNORMAL))
+#define WITH_MEAN (KIND(JOB_SIZES_NORMAL) | KIND(JOB_SIZES_LOGNORMAL))
+
+static const struct schema_key size_keys[] = {
+    {"radius", SCHEMA_NUMBER, "a radius; ascending in a table", .unit = "m", .required = true,
+     ABOVE_TO(0.0, FAR), AT(struct job_size, radius)},
+    {"share", SCHEMA_NUMBER,
+     "list: the share of this radius, in parts of the sum of all; table: the share of all "
+     "radii up to this one, from 0 for the first to 1 for the last",
+     .unit = "1", .required = true, BETWEEN(0.0, 1e9), AT(struct job_size, share)},
+    END};
+
+static const struct schema_key sizes_keys[] = {
+    {"kind", SCHEMA_CHOICE,
+     "how radii are distributed: some radii; evenly; normally; their logarithm normally; by a "
+     "cumulative curve (of sieves) that is straight between its points",
+     .required = true, .choices = sizes_kinds, AT(struct job_sizes, kind)},
+    {"by", SCHEMA_CHOICE, "the distribution is that of the number, or of the mass of spheres",
+     .standard = "number", .choices = sizes_bys, AT(struct job_sizes, by)},
+    {"min", SCHEMA_NUMBER, "least radius: smaller ones are cut off", .unit = "m",
+     .required = true, ABOVE_TO(0.0, FAR), .kinds = WITH_LIMITS, AT(struct job_sizes, min)},
+    {"max", SCHEMA_NUMBER, "greatest radius: greater ones are cut off", .unit = "m",
+     .required = true, ABOVE_TO(0.0, FAR), .kinds = WITH_LIMITS, AT(struct job_sizes, max)},
+    {"mean", SCHEMA_NUMBER, "mean radius before anything is cut off", .unit = "m",
+     .required = true, ABOVE_TO(0.0, FAR), .kinds = WITH_MEAN, AT(struct job_sizes, mean)},
+    {"deviation", SCHEMA_NUMBER, "standard deviation of the radius before anything is cut off",
+     .unit = "m", .required = true, ABOVE_TO(0.0, FAR), .kinds = WITH_MEAN,
+     AT(struct job_sizes, deviation)},
+    {"radii", SCHEMA_LIST, "radii and their shares", .required = true, BETWEEN(1.0, 10000.0),
+     .kinds = KIND(JOB_SIZES_LIST) | KIND(JOB_SIZES_TABLE), .inside = size_keys,
+     LIST_AT(struct job_sizes, list, n)},
+    END};
+
+/* A region and a distribution of radii within another struct. */
+#define REGION_AT(type, member)                                                                \
+    .inside = region_keys, .offset = offsetof(type, member), GIVEN(type, member.given)
+#define SIZES_AT(type, member)                                                                 \
+    .inside = sizes_keys, .offset = offsetof(type, member), GIVEN(type, member.given)
+
 static const struct schema_key packing_keys[] = {
     {"kind", SCHEMA_CHOICE, "how the group is placed at the start", .required = true,
      .choices = packings, AT(struct job_spheres, packing)},
@@ -157,6 +222,8 @@ static const struct schema_key spheres_keys[] = {
     {"radius", SCHEMA_NUMBER,
      "radius; may be left out where a CSV file has the column radius_m", .unit = "m",
      ABOVE_TO(0.0, FAR), GIVEN(struct job_spheres, radius), AT(struct job_spheres, radius)},
+    {"sizes", SCHEMA_GROUP, "radii that differ, instead of `radius`",
+     SIZES_AT(struct job_spheres, sizes)},
     {"velocity", SCHEMA_NUMBER, "velocity at the start (where a CSV file does not give it)",
      .unit = "m/s", .standard = ZERO, BETWEEN(-FAR, FAR), AT(struct job_spheres, velocity)},
     {"spin", SCHEMA_NUMBER, "angular velocity at the start", .unit = "rad/s", .standard = ZERO,
@@ -355,6 +422,9 @@ const struct schema_key job_keys[] = {
          "then what a later library says"},
     {"time", SCHEMA_GROUP, "how long and in which steps", .required = true,
      .inside = time_keys},
+    {"seed", SCHEMA_COUNT,
+     "seed of all random numbers: another one gives another scene that is as likely",
+     .standard = "1", BETWEEN(0.0, 1e15), AT(struct job, seed)},
     {"gravity", SCHEMA_NUMBER, "acceleration of gravity", .unit = "m/s2",
      .standard = "[0, 0, -9.81]", BETWEEN(-FAR, FAR), AT(struct job, gravity)},
     {"damping", SCHEMA_NUMBER,

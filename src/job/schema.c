@@ -640,7 +640,7 @@ static void value_read(const struct item *item)
         facets_read(item);
         break;
     case SCHEMA_GROUP:
-        schema_read(item->reader, item->key->inside, item->node, item->path, item->into);
+        schema_read(item->reader, item->key->inside, item->node, item->path, into);
         break;
     case SCHEMA_LIST:
     case SCHEMA_NAMED:
@@ -796,7 +796,7 @@ void schema_clear(const struct schema_key *table, void *from)
         char *place = (char *)from + key->offset;
         const bool list = key->type == SCHEMA_LIST || key->type == SCHEMA_NAMED;
         if (key->type == SCHEMA_GROUP)
-            schema_clear(key->inside, from);
+            schema_clear(key->inside, place);
         for (int i = 0; list && i < *(const int *)((char *)from + key->count); i++) {
             char *element = *(char **)place + (size_t)i * key->element;
             schema_clear(key->inside, element);

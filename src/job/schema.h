@@ -31,7 +31,7 @@ enum schema_type {
     SCHEMA_NUMBERS,   /* double * and a count: a list of numbers */
     SCHEMA_POINTS,    /* struct vec3 * and a count: a list of [x, y, z] */
     SCHEMA_FACETS,    /* int (*)[4] and a count: a list of 3 or 4 indices, the fourth else -1 */
-    SCHEMA_GROUP,     /* a mapping whose values go to the same struct */
+    SCHEMA_GROUP,     /* a mapping whose values go to the same struct, or to one inside it */
     SCHEMA_LIST,      /* pointer and count: a list of mappings */
     SCHEMA_NAMED,   /* pointer and count: a mapping of at most `max` names to mappings; the name
                      is the element's first member */

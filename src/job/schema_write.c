@@ -216,7 +216,7 @@ static void table_write(struct page *page, const struct schema_key *table, const
         if (key->type == SCHEMA_GROUP) {
             fputc('\n', page->out);
             page->indent += 2;
-            table_write(page, key->inside, from);
+            table_write(page, key->inside, from + key->offset);
             page->indent -= 2;
         } else if (key->type == SCHEMA_LIST || key->type == SCHEMA_NAMED) {
             elements_write(page, key, from);

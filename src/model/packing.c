@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/random.h"
 #include "job/job.h"
 
 enum column {
@@ -159,8 +160,11 @@ static bool read_rows(struct packing *packing, const struct job *job, FILE *file
 
 bool packing_open(struct packing *packing, const struct job *job, int group, char **why)
 {
-    *packing = (struct packing){.group = &job->spheres[group]};
+    *packing = (struct packing){.group = &job->spheres[group],
+                                .seed = (uint64_t)job->seed,
+                                .sizes_stream = random_stream(RANDOM_PACKING_SIZES, group)};
     *why = NULL;
+    sizes_build(&packing->sizes, &packing->group->sizes, packing->group->radius);
     if (packing->group->packing == JOB_PACKING_LATTICE) {
         packing->n = packing->group->count;
         return true;
@@ -181,13 +185,15 @@ bool packing_open(struct packing *packing, const struct job *job, int group, cha
 
 void packing_close(struct packing *packing)
 {
+    sizes_clear(&packing->sizes);
     free(packing->rows);
     packing->rows = NULL;
     packing->n = 0;
 }
 
-static struct packing_sphere lattice_sphere(const struct job_spheres *group, int64_t k)
+static struct packing_sphere lattice_sphere(const struct packing *packing, int64_t k)
 {
+    const struct job_spheres *group = packing->group;
     /* As many places as fit, with a hair's breadth for what 5.28 / 0.22 does not divide to. */
     int64_t n[2];
     for (int c = 0; c < 2; c++) {
@@ -196,14 +202,15 @@ static struct packing_sphere lattice_sphere(const struct job_spheres *group, int
     }
     const int64_t layer = k / (n[0] * n[1]), row = k / n[0] % n[1], column = k % n[0];
     const struct vec3 steps = {(double)column + 0.5, (double)row + 0.5, (double)layer + 0.5};
-    return (struct packing_sphere){.position = vec3_axpy(group->corner, group->spacing, steps),
-                                   .velocity = group->velocity,
-                                   .angular_velocity = group->spin,
-                                   .radius = group->radius,
-                                   .material = group->material};
+    return (struct packing_sphere){
+        .position = vec3_axpy(group->corner, group->spacing, steps),
+        .velocity = group->velocity,
+        .angular_velocity = group->spin,
+        .radius = sizes_draw(&packing->sizes, packing->seed, packing->sizes_stream, k),
+        .material = group->material};
 }
 
 struct packing_sphere packing_get(const struct packing *packing, int64_t k)
 {
-    return packing->rows != NULL ? packing->rows[k] : lattice_sphere(packing->group, k);
+    return packing->rows != NULL ? packing->rows[k] : lattice_sphere(packing, k);
 }

@@ -9,6 +9,7 @@
 #include <stdint.h>
 
 #include "base/vec3.h"
+#include "model/sizes.h"
 
 struct job;
 struct job_spheres;
@@ -24,6 +25,8 @@ struct packing_sphere {
 struct packing {
     const struct job_spheres *group;
     int64_t n;
+    uint64_t seed, sizes_stream;
+    struct sizes sizes;
     struct packing_sphere *rows; /* of a CSV file; NULL for a lattice */
 };
 

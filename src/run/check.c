@@ -116,7 +116,8 @@ static void add_limits(struct limits *limits, const struct job *job,
     struct packing packing;
     char *why = NULL;
     CHECK(packing_open(&packing, job, group, &why), "%s", why);
-    const int64_t n = packing.rows != NULL || packing.n == 0 ? packing.n : 1;
+    const bool alike = packing.rows == NULL && !packing.group->sizes.given;
+    const int64_t n = alike && packing.n > 0 ? 1 : packing.n;
     for (int64_t k = 0; k < n; k++) {
         const struct packing_sphere sphere = packing_get(&packing, k);
         limits_add(limits, job, materials, &sphere);

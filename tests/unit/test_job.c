@@ -272,8 +272,8 @@ TEST(steps_lattices_and_pairs)
                     "multiple is expected"));
     EXPECT(!job_from(START SPHERES, 1, &spacing));
     EXPECT(has_mistake(1, 27,
-                       "spheres.0.packing.spacing makes spheres overlap; at least two radii, "
-                       "0.2 m, are expected"));
+                       "spheres.0.packing.spacing makes spheres overlap; at least two of the "
+                       "greatest radii, 0.2 m, are expected"));
     EXPECT(!job_from(START SPHERES, 1, &size));
     EXPECT(has_mistake(1, 24,
                        "spheres.0.packing.size is narrower than a sphere; at least two radii, "

@@ -1,0 +1,442 @@
+/*
+ * See region.h.  Inside a surface is where a line straight up meets it an odd number of times.
+ *
+ * The line never meets an edge or a vertex: it is taken to pass by an infinitesimal beside them
+ * (first in y, then in x).  An edge's crossing of the line's y is computed from the edge alone,
+ * so the triangles at it agree on which side the line passes, and seen along z the triangles
+ * cover the plane without gap or overlap whatever the rounding.  Only whether a triangle is met
+ * above or below x is a matter of rounding, and only where x is on the triangle: within any
+ * margin of it.
+ *
+ * Triangles are listed in the cells of a grid that their boxes meet; a query costs the lists of
+ * one column of cells from x upwards, and of those within the margin.
+ */
+#include "model/region.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/random.h"
+#include "model/body.h"
+
+enum { CELLS_ALONG_MOST = 128 };
+
+static const double PI = 3.14159265358979323846;
+
+struct triangle {
+    struct vec3 corners[3]; /* [m] */
+    struct vec3 low, high;  /* its box [m] */
+};
+
+struct region_surface {
+    int n;
+    struct triangle *triangles;
+    struct vec3 origin; /* of the grid [m] */
+    double cell;        /* edge of a cell [m] */
+    int cells[3];
+    int *begin, *list; /* triangles of cell c: list[begin[c]] .. list[begin[c + 1] - 1] */
+};
+
+static double lesser(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double greater(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+static void box_add(struct vec3 *low, struct vec3 *high, struct vec3 x)
+{
+    *low = (struct vec3){lesser(low->x, x.x), lesser(low->y, x.y), lesser(low->z, x.z)};
+    *high = (struct vec3){greater(high->x, x.x), greater(high->y, x.y), greater(high->z, x.z)};
+}
+
+/* ------------------------------------------------------------------------------- the grid */
+
+static int cell_along(double x, double origin, double cell, int n)
+{
+    const double k = (x - origin) / cell;
+    return !(k > 0.0) ? 0 : k >= (double)n ? n - 1 : (int)k;
+}
+
+struct cells {
+    int low[3], high[3];
+};
+
+/* The cells that a box meets. */
+static struct cells cells_of(const struct region_surface *s, struct vec3 low, struct vec3 high)
+{
+    return (struct cells){{cell_along(low.x, s->origin.x, s->cell, s->cells[0]),
+                           cell_along(low.y, s->origin.y, s->cell, s->cells[1]),
+                           cell_along(low.z, s->origin.z, s->cell, s->cells[2])},
+                          {cell_along(high.x, s->origin.x, s->cell, s->cells[0]),
+                           cell_along(high.y, s->origin.y, s->cell, s->cells[1]),
+                           cell_along(high.z, s->origin.z, s->cell, s->cells[2])}};
+}
+
+static int cell_index(const struct region_surface *s, int i, int j, int k)
+{
+    return (i * s->cells[1] + j) * s->cells[2] + k;
+}
+
+/* Cubes, some four for each triangle. */
+static void choose_cells(struct region_surface *s, struct vec3 low, struct vec3 high)
+{
+    const struct vec3 size = vec3_sub(high, low);
+    const double longest = greater(size.x, greater(size.y, size.z));
+    const double along[3] = {size.x, size.y, size.z};
+    s->origin = low;
+    for (int n = 1; n <= CELLS_ALONG_MOST; n++) {
+        s->cell = longest / (double)n;
+        for (int c = 0; c < 3; c++)
+            s->cells[c] = (int)(along[c] / s->cell) + 1;
+        if ((double)s->cells[0] * s->cells[1] * s->cells[2] > 4.0 * s->n)
+            return;
+    }
+}
+
+/* Counts (list == NULL) or enters the triangles of each cell. */
+static void fill_cells(struct region_surface *s, int *at, int *list)
+{
+    for (int t = 0; t < s->n; t++) {
+        const struct cells c = cells_of(s, s->triangles[t].low, s->triangles[t].high);
+        for (int i = c.low[0]; i <= c.high[0]; i++) {
+            for (int j = c.low[1]; j <= c.high[1]; j++) {
+                for (int k = c.low[2]; k <= c.high[2]; k++) {
+                    const int cell = cell_index(s, i, j, k);
+                    if (list != NULL)
+                        list[at[cell]] = t;
+                    at[cell]++;
+                }
+            }
+        }
+    }
+}
+
+static void build_cells(struct region_surface *s)
+{
+    const size_t n = (size_t)s->cells[0] * (size_t)s->cells[1] * (size_t)s->cells[2];
+    int *at = array_allocate(n, sizeof *at);
+    s->begin = array_allocate(n + 1, sizeof *s->begin);
+    fill_cells(s, at, NULL);
+    for (size_t c = 0; c < n; c++) {
+        s->begin[c + 1] = s->begin[c] + at[c];
+        at[c] = s->begin[c];
+    }
+    s->list = array_allocate((size_t)s->begin[n], sizeof *s->list);
+    fill_cells(s, at, s->list);
+    free(at);
+}
+
+/* ------------------------------------------------------------------------------- surfaces */
+
+/* Is every edge met by faces that go along it as often one way as the other?  Says where it is
+ * not. */
+static bool is_closed(const struct body *body, char **why)
+{
+    const struct mesh *mesh = &body->mesh;
+    int *faces = array_allocate((size_t)mesh->n_edges, sizeof *faces);
+    int *turns = array_allocate((size_t)mesh->n_edges, sizeof *turns);
+    int n_open = 0, n_turned = 0, example = -1;
+    for (int f = 0; f < mesh->n_faces; f++) {
+        const struct mesh_face *face = &mesh->faces[f];
+        for (int k = 0; k < face->n; k++) {
+            const int e = face->edges[k];
+            faces[e]++;
+            turns[e] += mesh->edges[e].vertices[0] == face->vertices[k] ? 1 : -1;
+        }
+    }
+    for (int e = 0; e < mesh->n_edges; e++) {
+        n_open += faces[e] % 2 != 0;
+        n_turned += faces[e] % 2 == 0 && turns[e] != 0;
+        if (example < 0 && turns[e] != 0)
+            example = e;
+    }
+    free(faces);
+    free(turns);
+    if (mesh->n_faces > 0 && n_open == 0 && n_turned == 0)
+        return true;
+    struct vec3 x = {0.0, 0.0, 0.0};
+    for (int v = 0; example >= 0 && v < 2; v++)
+        x = vec3_axpy(x, 0.5, mesh->reference[mesh->edges[example].vertices[v]]);
+    *why =
+        n_open > 0 || mesh->n_faces == 0
+            ? array_format("'%s' is not closed: %d of its edges are open, one at [%.6g, "
+                           "%.6g, %.6g]; a body with a closed surface is expected",
+                           body->name, n_open, x.x, x.y, x.z)
+            : array_format("'%s' has facets that face each other's backs at %d edges, one at "
+                           "[%.6g, %.6g, %.6g]; facets that all face outwards are expected",
+                           body->name, n_turned, x.x, x.y, x.z);
+    return false;
+}
+
+static void add_triangle(struct region_surface *s, const struct mesh *mesh, int a, int b, int c)
+{
+    struct triangle *t = &s->triangles[s->n++];
+    t->corners[0] = t->low = t->high = mesh->reference[a];
+    t->corners[1] = mesh->reference[b];
+    t->corners[2] = mesh->reference[c];
+    for (int k = 1; k < 3; k++)
+        box_add(&t->low, &t->high, t->corners[k]);
+}
+
+/* By the divergence theorem: pyramids over the triangles, seen from a corner of the box. */
+static double enclosed_volume(const struct region_surface *s, struct vec3 from)
+{
+    double volume = 0.0;
+    for (int t = 0; t < s->n; t++) {
+        const struct vec3 a = vec3_sub(s->triangles[t].corners[0], from);
+        const struct vec3 b = vec3_sub(s->triangles[t].corners[1], from);
+        const struct vec3 c = vec3_sub(s->triangles[t].corners[2], from);
+        volume += vec3_dot(a, vec3_cross(b, c)) / 6.0;
+    }
+    return volume < 0.0 ? -volume : volume;
+}
+
+static bool build_surface(struct region *region, const char *name, const struct bodies *bodies,
+                          char **why)
+{
+    const struct body *body = NULL;
+    for (int b = 0; bodies != NULL && b < bodies->n; b++)
+        body = strcmp(bodies->list[b].name, name) == 0 ? &bodies->list[b] : body;
+    if (body == NULL) {
+        *why = array_format("there is no body '%s'; the name of a body is expected", name);
+        return false;
+    }
+    if (!is_closed(body, why))
+        return false;
+    const struct mesh *mesh = &body->mesh;
+    struct region_surface *s = array_allocate(1, sizeof *s);
+    s->triangles = array_allocate(2 * (size_t)mesh->n_faces, sizeof *s->triangles);
+    for (int f = 0; f < mesh->n_faces; f++) {
+        const int *v = mesh->faces[f].vertices;
+        add_triangle(s, mesh, v[0], v[1], v[2]);
+        if (mesh->faces[f].n == 4)
+            add_triangle(s, mesh, v[0], v[2], v[3]);
+    }
+    region->low = s->triangles[0].low;
+    region->high = s->triangles[0].high;
+    for (int t = 1; t < s->n; t++) {
+        box_add(&region->low, &region->high, s->triangles[t].low);
+        box_add(&region->low, &region->high, s->triangles[t].high);
+    }
+    region->volume = enclosed_volume(s, region->low);
+    choose_cells(s, region->low, region->high);
+    build_cells(s);
+    region->surface = s;
+    return true;
+}
+
+/* ------------------------------------------------------------------------------- building */
+
+static void build_cylinder(struct region *region, const struct job_region *asked)
+{
+    const struct vec3 along = vec3_sub(asked->to, asked->from);
+    region->length = vec3_norm(along);
+    region->axis = vec3_scale(1.0 / region->length, along);
+    region->centre = asked->from;
+    region->radius = asked->radius;
+    region->volume = PI * asked->radius * asked->radius * region->length;
+    region->low = region->high = asked->from;
+    box_add(&region->low, &region->high, asked->to);
+    const struct vec3 a = region->axis;
+    const struct vec3 aside = {sqrt(greater(1.0 - a.x * a.x, 0.0)),
+                               sqrt(greater(1.0 - a.y * a.y, 0.0)),
+                               sqrt(greater(1.0 - a.z * a.z, 0.0))};
+    region->low = vec3_axpy(region->low, -asked->radius, aside);
+    region->high = vec3_axpy(region->high, asked->radius, aside);
+}
+
+static void build_box(struct region *region, const struct job_region *asked)
+{
+    const struct vec3 size = vec3_sub(asked->max, asked->min);
+    region->low = asked->min;
+    region->high = asked->max;
+    region->volume = size.x * size.y * size.z;
+}
+
+static void build_sphere(struct region *region, const struct job_region *asked)
+{
+    const struct vec3 all = {1.0, 1.0, 1.0};
+    region->centre = asked->centre;
+    region->radius = asked->radius;
+    region->low = vec3_axpy(asked->centre, -asked->radius, all);
+    region->high = vec3_axpy(asked->centre, asked->radius, all);
+    region->volume = 4.0 / 3.0 * PI * asked->radius * asked->radius * asked->radius;
+}
+
+bool region_build(struct region *region, const struct job_region *asked,
+                  const struct bodies *bodies, char **why)
+{
+    *region = (struct region){.kind = asked->kind};
+    *why = NULL;
+    switch (asked->kind) {
+    case JOB_REGION_BOX:
+        build_box(region, asked);
+        break;
+    case JOB_REGION_CYLINDER:
+        build_cylinder(region, asked);
+        break;
+    case JOB_REGION_SPHERE:
+        build_sphere(region, asked);
+        break;
+    case JOB_REGION_INSIDE:
+        return build_surface(region, asked->body, bodies, why);
+    }
+    return true;
+}
+
+void region_clear(struct region *region)
+{
+    if (region->surface != NULL) {
+        free(region->surface->triangles);
+        free(region->surface->begin);
+        free(region->surface->list);
+    }
+    free(region->surface);
+    region->surface = NULL;
+}
+
+/* ------------------------------------------------------------------------------- distances */
+
+/* Square of the distance from x to the line between a and b. */
+static double segment_distance(struct vec3 x, struct vec3 a, struct vec3 b)
+{
+    const struct vec3 along = vec3_sub(b, a), r = vec3_sub(x, a);
+    const double length = vec3_dot(along, along), t = vec3_dot(r, along);
+    const double share = length > 0.0 ? lesser(greater(t / length, 0.0), 1.0) : 0.0;
+    const struct vec3 off = vec3_axpy(r, -share, along);
+    return vec3_dot(off, off);
+}
+
+/* Square of the distance from x to a triangle: to its plane where x is over it, else to the
+ * nearest side. */
+static double triangle_distance(const struct triangle *t, struct vec3 x)
+{
+    const struct vec3 *p = t->corners;
+    const struct vec3 normal = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
+    const double area = vec3_dot(normal, normal);
+    bool over = area > 0.0;
+    double least = HUGE_VAL;
+    for (int k = 0; k < 3; k++) {
+        const struct vec3 side = vec3_sub(p[(k + 1) % 3], p[k]);
+        over = over && vec3_dot(vec3_cross(normal, side), vec3_sub(x, p[k])) >= 0.0;
+        least = lesser(least, segment_distance(x, p[k], p[(k + 1) % 3]));
+    }
+    const double height = vec3_dot(normal, vec3_sub(x, p[0]));
+    return over ? lesser(least, height * height / area) : least;
+}
+
+/* Is a triangle of the surface nearer to x than the margin? */
+static bool is_near(const struct region_surface *s, struct vec3 x, double margin)
+{
+    const struct vec3 grow = {margin, margin, margin};
+    const struct cells c = cells_of(s, vec3_sub(x, grow), vec3_add(x, grow));
+    for (int i = c.low[0]; i <= c.high[0]; i++) {
+        for (int j = c.low[1]; j <= c.high[1]; j++) {
+            const int first = s->begin[cell_index(s, i, j, c.low[2])];
+            const int end = s->begin[cell_index(s, i, j, c.high[2]) + 1];
+            for (int l = first; l < end; l++)
+                if (triangle_distance(&s->triangles[s->list[l]], x) < margin * margin)
+                    return true;
+        }
+    }
+    return false;
+}
+
+/* ------------------------------------------------------------------------------- inside */
+
+/* Does the line through x pass to the left of where this side of a triangle crosses its y? */
+static bool crosses_right_of(struct vec3 a, struct vec3 b, struct vec3 x)
+{
+    if ((a.y > x.y) == (b.y > x.y))
+        return false;
+    const struct vec3 low = a.y < b.y ? a : b, high = a.y < b.y ? b : a;
+    const double at = low.x + (x.y - low.y) * ((high.x - low.x) / (high.y - low.y));
+    return greater(lesser(low.x, high.x), lesser(at, greater(low.x, high.x))) > x.x;
+}
+
+/* Does the line straight up through x meet the triangle?  Gives the height. */
+static bool meets(const struct triangle *t, struct vec3 x, double *height)
+{
+    bool odd = false;
+    for (int k = 0; k < 3; k++)
+        odd ^= crosses_right_of(t->corners[k], t->corners[(k + 1) % 3], x);
+    if (!odd)
+        return false;
+    const struct vec3 *p = t->corners;
+    const struct vec3 n = vec3_cross(vec3_sub(p[1], p[0]), vec3_sub(p[2], p[0]));
+    const double tilt = (x.x - p[0].x) * n.x + (x.y - p[0].y) * n.y;
+    const double z = n.z != 0.0 ? p[0].z - tilt / n.z : t->low.z;
+    *height = greater(t->low.z, lesser(z, t->high.z));
+    return true;
+}
+
+static bool is_within(const struct region_surface *s, struct vec3 x)
+{
+    const struct cells c = cells_of(s, x, x);
+    bool odd = false;
+    for (int k = c.low[2]; k < s->cells[2]; k++) {
+        const int cell = cell_index(s, c.low[0], c.low[1], k);
+        for (int l = s->begin[cell]; l < s->begin[cell + 1]; l++) {
+            double z;
+            /* A triangle stands in several cells but counts in that of its height. */
+            if (meets(&s->triangles[s->list[l]], x, &z) && z > x.z &&
+                cell_along(z, s->origin.z, s->cell, s->cells[2]) == k)
+                odd = !odd;
+        }
+    }
+    return odd;
+}
+
+static bool is_in_box(const struct region *region, struct vec3 x, double margin)
+{
+    const struct vec3 a = region->low, b = region->high;
+    return x.x - a.x >= margin && x.y - a.y >= margin && x.z - a.z >= margin &&
+           b.x - x.x >= margin && b.y - x.y >= margin && b.z - x.z >= margin;
+}
+
+static bool is_in_cylinder(const struct region *region, struct vec3 x, double margin)
+{
+    const struct vec3 r = vec3_sub(x, region->centre);
+    const double along = vec3_dot(r, region->axis);
+    const struct vec3 aside = vec3_axpy(r, -along, region->axis);
+    return along >= margin && region->length - along >= margin &&
+           vec3_norm(aside) <= region->radius - margin;
+}
+
+bool region_contains(const struct region *region, struct vec3 x, double margin)
+{
+    switch (region->kind) {
+    case JOB_REGION_BOX:
+        return is_in_box(region, x, margin);
+    case JOB_REGION_CYLINDER:
+        return is_in_cylinder(region, x, margin);
+    case JOB_REGION_SPHERE:
+        return vec3_norm(vec3_sub(x, region->centre)) <= region->radius - margin;
+    case JOB_REGION_INSIDE:
+        return is_in_box(region, x, margin) && !is_near(region->surface, x, margin) &&
+               is_within(region->surface, x);
+    }
+    return false;
+}
+
+static double between(double low, double high, double margin, double share)
+{
+    const double room = (high - low) - 2.0 * margin;
+    return room > 0.0 ? (low + margin) + share * room : 0.5 * (low + high);
+}
+
+struct vec3 region_point(const struct region *region, double margin, uint64_t seed,
+                         uint64_t stream, uint64_t attempt)
+{
+    const struct vec3 a = region->low, b = region->high;
+    return (struct vec3){
+        between(a.x, b.x, margin, random_unit(seed, stream, 3 * attempt)),
+        between(a.y, b.y, margin, random_unit(seed, stream, 3 * attempt + 1)),
+        between(a.z, b.z, margin, random_unit(seed, stream, 3 * attempt + 2)),
+    };
+}

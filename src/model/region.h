@@ -1,0 +1,44 @@
+/*
+ * A part of space that does not move: a box, a cylinder, a ball, or the inside of a body's
+ * closed surface (as it is at time 0).  For packings, insertion, what is counted or damped.
+ *
+ * Answers are exact comparisons of + - * / and square roots, so they are the same on every
+ * rank. Local, all of it.
+ */
+#ifndef TREMIE_MODEL_REGION_H
+#define TREMIE_MODEL_REGION_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/vec3.h"
+#include "job/job.h"
+
+struct bodies;
+struct region_surface;
+
+struct region {
+    enum job_region_kind kind;
+    struct vec3 low, high;          /* corners of the least box that holds it [m] */
+    double volume;                  /* [m3] */
+    struct vec3 centre;             /* sphere; cylinder: one end of its axis [m] */
+    struct vec3 axis;               /* cylinder: of length 1 */
+    double length, radius;          /* cylinder, sphere [m] */
+    struct region_surface *surface; /* inside; else NULL */
+};
+
+/* Builds the region.  `bodies` are only looked at for `inside`, and not kept.  Returns false
+ * with the reason in *why (caller frees): no such body, or its surface is not closed. */
+bool region_build(struct region *region, const struct job_region *asked,
+                  const struct bodies *bodies, char **why);
+void region_clear(struct region *region);
+
+/* Is x inside, at least `margin` (>= 0) from the region's surface? */
+bool region_contains(const struct region *region, struct vec3 x, double margin);
+
+/* A random point, even in the box that holds all places with this margin: try region_contains
+ * next.  Attempts from 0; each takes the counters 3 attempt .. 3 attempt + 2 of the stream. */
+struct vec3 region_point(const struct region *region, double margin, uint64_t seed,
+                         uint64_t stream, uint64_t attempt);
+
+#endif
