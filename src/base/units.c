@@ -73,6 +73,8 @@ static const struct {
     {"Pa", "a pressure", "70 GPa"},
     {"N", "a force", "10 kN"},
     {"N/m", "a stiffness", "100 kN/m"},
+    {"N m", "a torque", "5 N m"},
+    {"kg m2", "a moment of inertia", "0.5 kg m2"},
     {"J", "an energy", "3 J"},
 };
 

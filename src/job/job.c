@@ -16,6 +16,7 @@
 #include "base/report.h"
 #include "job/job_check.h"
 #include "job/job_keys.h"
+#include "job/path_file.h"
 #include "job/schema.h"
 #include "job/yaml_tree.h"
 
@@ -358,6 +359,8 @@ static bool job_fill(struct job *job, const char *path, const struct yaml_tree_n
     const char **names = material_names(root, &reader.n_names);
     reader.names = names;
     schema_read(&reader, job_keys, root, "", job);
+    if (read_files)
+        path_file_read_all(job, mistakes);
     job->path = array_string(path);
     job->name = job_name(path);
     bool *used = array_allocate((size_t)job->n_materials, sizeof *used);

@@ -121,7 +121,74 @@ enum job_side { /* sides of a box that are left open */
                 JOB_SIDE_TOP = 32,
 };
 
-/* A rigid body: a surface of quads and triangles that moves as prescribed. */
+/* A place of a tabulated path. */
+struct job_path_point {
+    double time;       /* since the motion's start [s] */
+    struct vec3 place; /* [m]; differences from the first one count */
+    double angle;      /* about the path's axis [rad]; likewise */
+};
+
+/* One motion, while it lasts: X -> pivot + Q(angle) (X - pivot) + shift, where the shift is that
+ * of velocity, oscillation and path together and the angle that of one of rotation, swing and
+ * path (THEORY 3). */
+struct job_motion {
+    struct vec3 velocity;    /* [m/s] */
+    struct vec3 pivot, axis; /* axis has length 1, or 0 where nothing rotates */
+    double rate;             /* angular velocity about the axis [rad/s] */
+    struct {                 /* there when direction has length 1 */
+        struct vec3 direction;
+        double amplitude;        /* [m] */
+        double frequency, phase; /* [1/s], [rad] */
+    } oscillation;
+    struct { /* there when axis has length 1 */
+        struct vec3 pivot, axis;
+        double amplitude;        /* [rad] */
+        double frequency, phase; /* [1/s], [rad] */
+    } swing;
+    struct {
+        bool given;
+        char *file; /* of the job file alone: read into points, then NULL */
+        int n;
+        struct job_path_point *points;
+        struct vec3 pivot, axis; /* axis has length 0 where the path does not turn */
+    } path;
+    double start, stop; /* [s]; stop is infinite by default */
+};
+
+enum job_drive { JOB_DRIVE_SLIDE, JOB_DRIVE_TURN };
+
+/* One freedom of a body, along or about an axis, that forces move. */
+struct job_driven {
+    bool given;
+    enum job_drive kind;
+    struct vec3 axis;      /* of length 1 */
+    struct vec3 point;     /* turn: of the axis [m] */
+    double mass, inertia;  /* slide [kg]; turn, about the axis [kg m2] */
+    double force, torque;  /* applied, along or about the axis [N], [N m] */
+    double speed, rate;    /* at the start [m/s], [rad/s] */
+    double damping;        /* force = -damping * mass * speed, torque likewise [1/s] */
+    double friction, drag; /* slide [N], turn [N m]: what dry friction can hold */
+    bool limited;
+    double travel[2], angles[2]; /* least and greatest [m], [rad]; 0 at the start */
+    double start;                /* held until then [s] */
+};
+
+/* All six freedoms of a body. */
+struct job_free {
+    bool given;
+    double mass;    /* [kg]; 0: from the density */
+    double density; /* of the closed surface's inside [kg/m3] */
+    bool has_inertia, has_centre;
+    double inertia[6];          /* about the centre: xx, yy, zz, xy, xz, yz [kg m2] */
+    struct vec3 centre;         /* of mass, at the start [m] */
+    struct vec3 velocity, spin; /* at the start [m/s], [rad/s] */
+    double damping;             /* [1/s] */
+    double start;               /* held until then [s] */
+};
+
+enum { JOB_FORCED_MOST = 300 }; /* bodies that forces move, in one job */
+
+/* A rigid body: a surface of quads and triangles, at rest, moving as prescribed or by forces. */
 struct job_body {
     char *name;
     int material;
@@ -137,12 +204,20 @@ struct job_body {
     struct vec3 *vertices;     /* [m] */
     int n_facets;
     int (*facets)[4]; /* vertex indices; a triangle has -1 last */
-    /* Motion: x(t) = pivot + R(rate t about axis) (x(0) - pivot) + velocity t, within
-     * [start, stop]. */
-    struct vec3 velocity;    /* [m/s] */
-    struct vec3 pivot, axis; /* axis has length 1, or 0 where nothing rotates */
-    double rate;             /* angular velocity about the axis [rad/s] */
-    double start, stop;      /* [s]; stop is infinite by default */
+    /* Prescribed motion: each motion moves what those before it in the list have made of the
+     * body. */
+    int n_motions;
+    struct job_motion *motions;
+    struct job_driven driven;
+    struct job_free free;
+    bool comes_and_goes;
+    double active[2]; /* then: when it comes and when it goes [s] */
+};
+
+/* Gravity at a time, between which it changes linearly. */
+struct job_gravity {
+    double time;         /* [s] */
+    struct vec3 gravity; /* [m/s2] */
 };
 
 enum job_split { /* what counts are told apart by besides the total */
@@ -179,8 +254,15 @@ struct job {
         double safety; /* step: auto takes this share of the critical step */
     } time;
     int64_t seed;        /* of all random numbers */
-    struct vec3 gravity; /* [m/s2] */
-    double damping;      /* mass-proportional: force = -damping * m * v [1/s] */
+    struct vec3 gravity; /* [m/s2]; at the start where it turns, none where there is a table */
+    struct {
+        struct vec3 axis; /* of length 1; 0: it does not turn */
+        double rate;      /* [rad/s] */
+        double start, stop;
+    } gravity_turn;
+    int n_gravity_table;
+    struct job_gravity *gravity_table;
+    double damping; /* mass-proportional: force = -damping * m * v [1/s] */
     int n_materials, n_pairs, n_spheres, n_bodies, n_sections;
     struct job_material *materials;
     struct job_pair *pairs;

@@ -436,9 +436,148 @@ static void mesh_check(const struct check *check, const struct job_body *body, i
     }
 }
 
+/* The place of a body's motion m in messages, with a key of it: as the file has it, one mapping
+ * or an element of a list. */
+static void motion_path(const struct check *check, int i, int m, const char *key, char *path,
+                        size_t size)
+{
+    char list[64];
+    snprintf(list, sizeof list, "bodies.%d.motion", i);
+    const struct yaml_tree_node *node = yaml_tree_nearest(check->root, list);
+    if (node->kind == YAML_TREE_LIST)
+        snprintf(path, size, "%s.%d.%s", list, m, key);
+    else
+        snprintf(path, size, "%s.%s", list, key);
+}
+
+static void path_check(const struct check *check, const struct job_motion *motion, int i, int m)
+{
+    const struct job_path_point *points = motion->path.points;
+    char path[96];
+    bool turns = false;
+    motion_path(check, i, m, "path.points", path, sizeof path);
+    if (motion->path.n > 0 && motion->path.file != NULL)
+        mistake(check, path, "stands beside a file; one of them is expected");
+    else if (motion->path.n < 2)
+        mistake(check, path, "has fewer than 2 points; at least 2, or a file, are expected");
+    for (int k = 0; k < motion->path.n; k++)
+        turns = turns || points[k].angle != 0.0;
+    for (int k = 1; k < motion->path.n; k++) {
+        if (points[k - 1].time < points[k].time)
+            continue;
+        char point[32];
+        snprintf(point, sizeof point, "path.points.%d.time", k);
+        motion_path(check, i, m, point, path, sizeof path);
+        mistake(check, path,
+                "does not ascend; a time after that of the point before is expected");
+        break;
+    }
+    motion_path(check, i, m, "path.axis", path, sizeof path);
+    if (turns && vec3_norm(motion->path.axis) == 0.0)
+        mistake(check, path, "is missing; the axis of the path's angles is expected");
+}
+
+static void motions_check(const struct check *check, const struct job_body *body, int i)
+{
+    char path[96];
+    for (int m = 0; m < body->n_motions; m++) {
+        const struct job_motion *motion = &body->motions[m];
+        const int n_turns = (vec3_norm(motion->axis) > 0.0) +
+                            (vec3_norm(motion->swing.axis) > 0.0) +
+                            (vec3_norm(motion->path.axis) > 0.0);
+        motion_path(check, i, m, "stop", path, sizeof path);
+        if (!(motion->start < motion->stop))
+            mistake(check, path, "is not after start; a later time is expected");
+        motion_path(check, i, m, "rotation", path, sizeof path);
+        if (n_turns > 1)
+            mistake(check, path,
+                    "is one of several turns in a motion; one of rotation, swing and path.axis "
+                    "is expected, others in motions of their own");
+        if (motion->path.given)
+            path_check(check, motion, i, m);
+    }
+}
+
+/* Is a symmetric matrix (xx, yy, zz, xy, xz, yz) positive? */
+static bool is_positive(const double m[6])
+{
+    const double minor = m[0] * m[1] - m[3] * m[3];
+    const double all = m[0] * (m[1] * m[2] - m[5] * m[5]) - m[3] * (m[3] * m[2] - m[5] * m[4]) +
+                       m[4] * (m[3] * m[5] - m[1] * m[4]);
+    return m[0] > 0.0 && minor > 0.0 && all > 0.0;
+}
+
+/* Half the trace less the tensor is the second moment of mass, which cannot be negative: then
+ * no principal moment is larger than the other two together. */
+static bool is_inertia(const double m[6])
+{
+    const double half = 0.5 * (m[0] + m[1] + m[2]), hair = 1e-9 * half;
+    const double moments[6] = {
+        half - m[0] + hair, half - m[1] + hair, half - m[2] + hair, -m[3], -m[4], -m[5]};
+    return is_positive(m) && is_positive(moments);
+}
+
+static void free_check(const struct check *check, const struct job_free *asked, int i)
+{
+    char path[64];
+    const bool masses = asked->mass > 0.0 || asked->has_inertia || asked->has_centre;
+    PATH("bodies.%d.free", i);
+    if (asked->density > 0.0
+            ? masses
+            : !(asked->mass > 0.0) || !asked->has_inertia || !asked->has_centre)
+        mistake(check, path,
+                "has no mass, or two; density, or mass, inertia and centre, are expected");
+    PATH("bodies.%d.free.inertia", i);
+    if (asked->has_inertia && !is_inertia(asked->inertia))
+        mistake(check, path,
+                "is that of no body; positive principal moments, none larger than the other "
+                "two together, are expected");
+}
+
+/* What moves a body besides a motion. */
+static void forced_check(const struct check *check, const struct job_body *body, int i)
+{
+    const struct job_driven *driven = &body->driven;
+    char path[64];
+    const int n_ways = (body->n_motions > 0) + driven->given + body->free.given;
+    PATH("bodies.%d.%s", i, driven->given ? "driven" : "free");
+    if (n_ways > 1)
+        mistake(
+            check, path,
+            "stands beside another way to move; one of motion, driven and free is expected");
+    const bool slides = driven->kind == JOB_DRIVE_SLIDE;
+    const double *limits = slides ? driven->travel : driven->angles;
+    PATH("bodies.%d.driven.%s", i, slides ? "travel" : "angles");
+    if (driven->given && driven->limited &&
+        !(limits[0] <= 0.0 && limits[1] >= 0.0 && limits[0] < limits[1]))
+        mistake(check, path,
+                "does not ascend from 0 or less to 0 or more; 0 is where the body starts");
+    if (body->free.given)
+        free_check(check, &body->free, i);
+}
+
+static void gravity_check(const struct check *check)
+{
+    const struct job *job = check->job;
+    const bool turns = vec3_norm(job->gravity_turn.axis) > 0.0;
+    char path[64];
+    if (!is_clean(check, "gravity"))
+        return;
+    if (job->n_gravity_table > 0 && turns)
+        mistake(check, "gravity_table", "stands beside gravity_turn; one of them is expected");
+    if (turns && !(job->gravity_turn.start < job->gravity_turn.stop))
+        mistake(check, "gravity_turn.stop", "is not after start; a later time is expected");
+    for (int k = 1; k < job->n_gravity_table; k++) {
+        PATH("gravity_table.%d.time", k);
+        if (!(job->gravity_table[k - 1].time < job->gravity_table[k].time))
+            mistake(check, path, "does not ascend; a time after the one before is expected");
+    }
+}
+
 static void bodies_check(const struct check *check, bool *standing)
 {
     const struct job *job = check->job;
+    int n_forced = 0;
     for (int i = 0; i < job->n_bodies; i++) {
         const struct job_body *body = &job->bodies[i];
         char path[64];
@@ -452,10 +591,17 @@ static void bodies_check(const struct check *check, bool *standing)
             hopper_check(check, body, i);
         else if (body->geometry == JOB_GEOMETRY_MESH)
             mesh_check(check, body, i);
-        PATH("bodies.%d.motion.stop", i);
-        if (!(body->start < body->stop))
-            mistake(check, path, "is not after start; a later time is expected");
+        motions_check(check, body, i);
+        forced_check(check, body, i);
+        PATH("bodies.%d.active", i);
+        if (body->comes_and_goes && !(body->active[0] < body->active[1]))
+            mistake(check, path,
+                    "does not ascend; two times, the later one last, are expected");
+        n_forced += body->driven.given || body->free.given;
     }
+    if (n_forced > JOB_FORCED_MOST)
+        mistake(check, "bodies", "has %d that are driven or free; at most %d are expected",
+                n_forced, JOB_FORCED_MOST);
 }
 
 /* Numbers of a list that do not ascend. */
@@ -578,6 +724,7 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     spheres_check(&check, read_files, falling);
     bodies_check(&check, standing);
     sections_check(&check);
+    gravity_check(&check);
     domain_check(&check);
     pairs_check(&check, falling, standing);
     laws_check(&check);

@@ -50,6 +50,7 @@ static const char *const geometries[] = {"plane", "box", "hopper", "mesh", NULL}
 static const char *const sides[] = {"x_min", "x_max", "y_min", "y_max", "bottom", "top", NULL};
 static const char *const section_kinds[] = {"plane", "disc", "rectangle", NULL};
 static const char *const splits[] = {"material", "size", NULL};
+static const char *const drives[] = {"slide", "turn", NULL};
 static const char *const leavers[] = {"stop", "remove", "ignore", NULL};
 static const char *const weights[] = {"contacts", "candidates", NULL};
 static const char *const searches[] = {"auto", "all-pairs", NULL};
@@ -268,23 +269,155 @@ static const struct schema_key geometry_keys[] = {
     END};
 
 static const struct schema_key rotation_keys[] = {
-    {"point", SCHEMA_NUMBER, "a point of the axis at time 0 (it moves with `velocity`)",
-     .unit = "m", .required = true, BETWEEN(-FAR, FAR), AT(struct job_body, pivot)},
+    {"point", SCHEMA_NUMBER, "a point of the axis (it moves with the motion's translation)",
+     .unit = "m", .required = true, BETWEEN(-FAR, FAR), AT(struct job_motion, pivot)},
     {"axis", SCHEMA_DIRECTION, "direction of the axis; the right hand's thumb",
-     .required = true, AT(struct job_body, axis)},
+     .required = true, AT(struct job_motion, axis)},
     {"rate", SCHEMA_NUMBER, "angular velocity about the axis", .unit = "rad/s",
-     .required = true, BETWEEN(-FAR, FAR), AT(struct job_body, rate)},
+     .required = true, BETWEEN(-FAR, FAR), AT(struct job_motion, rate)},
+    END};
+
+static const struct schema_key oscillation_keys[] = {
+    {"direction", SCHEMA_DIRECTION, "along which it oscillates", .required = true,
+     AT(struct job_motion, oscillation.direction)},
+    {"amplitude", SCHEMA_NUMBER, "half of the way from end to end", .unit = "m",
+     .required = true, ABOVE_TO(0.0, FAR), AT(struct job_motion, oscillation.amplitude)},
+    {"frequency", SCHEMA_NUMBER, "cycles in a time", .unit = "1/s", .required = true,
+     ABOVE_TO(0.0, FAR), AT(struct job_motion, oscillation.frequency)},
+    {"phase", SCHEMA_NUMBER,
+     "angle of the sine at `start`; the body begins where it is, whatever the phase",
+     .unit = "rad", .standard = "0", BETWEEN(-100.0, 100.0),
+     AT(struct job_motion, oscillation.phase)},
+    END};
+
+static const struct schema_key swing_keys[] = {
+    {"point", SCHEMA_NUMBER, "a point of the axis (it moves with the motion's translation)",
+     .unit = "m", .required = true, BETWEEN(-FAR, FAR), AT(struct job_motion, swing.pivot)},
+    {"axis", SCHEMA_DIRECTION, "direction of the axis; the right hand's thumb",
+     .required = true, AT(struct job_motion, swing.axis)},
+    {"amplitude", SCHEMA_NUMBER, "half of the angle from end to end", .unit = "rad",
+     .required = true, ABOVE_TO(0.0, FAR), AT(struct job_motion, swing.amplitude)},
+    {"frequency", SCHEMA_NUMBER, "cycles in a time", .unit = "1/s", .required = true,
+     ABOVE_TO(0.0, FAR), AT(struct job_motion, swing.frequency)},
+    {"phase", SCHEMA_NUMBER, "angle of the sine at `start`", .unit = "rad", .standard = "0",
+     BETWEEN(-100.0, 100.0), AT(struct job_motion, swing.phase)},
+    END};
+
+static const struct schema_key path_point_keys[] = {
+    {"time", SCHEMA_NUMBER, "since `start`; ascending", .unit = "s", .required = true,
+     BETWEEN(0.0, 1e9), AT(struct job_path_point, time)},
+    {"place", SCHEMA_NUMBER,
+     "where a point of the body is; the body moves by the differences from the first row",
+     .unit = "m", .standard = ZERO, BETWEEN(-FAR, FAR), AT(struct job_path_point, place)},
+    {"angle", SCHEMA_NUMBER, "about the path's axis; differences count likewise", .unit = "rad",
+     .standard = "0", BETWEEN(-1e8, 1e8), AT(struct job_path_point, angle)},
+    END};
+
+static const struct schema_key path_keys[] = {
+    {"points", SCHEMA_LIST,
+     "places at times, with straight lines at constant speed between them; before the first "
+     "and after the last the body rests",
+     GIVEN(struct job_motion, path.n), BETWEEN(2.0, 20000.0), .inside = path_point_keys,
+     LIST_AT(struct job_motion, path.points, path.n)},
+    {"file", SCHEMA_FILE,
+     "the same from a CSV file whose first line names the columns t_s and any of x_m, y_m, "
+     "z_m and angle_rad",
+     GIVEN(struct job_motion, path.file), AT(struct job_motion, path.file)},
+    {"point", SCHEMA_NUMBER, "a point of the axis of `angle` (it moves with the path)",
+     .unit = "m", .standard = ZERO, BETWEEN(-FAR, FAR), AT(struct job_motion, path.pivot)},
+    {"axis", SCHEMA_DIRECTION, "direction of the axis of `angle`; required where one is given",
+     GIVEN(struct job_motion, path.axis), AT(struct job_motion, path.axis)},
     END};
 
 static const struct schema_key motion_keys[] = {
     {"velocity", SCHEMA_NUMBER, "velocity of translation", .unit = "m/s", .standard = ZERO,
-     BETWEEN(-FAR, FAR), AT(struct job_body, velocity)},
+     BETWEEN(-FAR, FAR), AT(struct job_motion, velocity)},
     {"rotation", SCHEMA_GROUP, "rotation about an axis", .inside = rotation_keys,
-     GIVEN(struct job_body, axis)},
+     GIVEN(struct job_motion, axis)},
+    {"oscillation", SCHEMA_GROUP,
+     "to and fro along a direction: amplitude x (sin(2 pi frequency t + phase) - sin(phase))",
+     .inside = oscillation_keys, GIVEN(struct job_motion, oscillation.direction)},
+    {"swing", SCHEMA_GROUP,
+     "to and fro about an axis, likewise; a motion has one of rotation, swing and path.axis",
+     .inside = swing_keys, GIVEN(struct job_motion, swing.axis)},
+    {"path", SCHEMA_GROUP, "a tabulated path", .inside = path_keys,
+     GIVEN(struct job_motion, path.given)},
     {"start", SCHEMA_NUMBER, "when the motion begins", .unit = "s", .standard = "0",
-     BETWEEN(0.0, 1e9), AT(struct job_body, start)},
+     BETWEEN(0.0, 1e9), AT(struct job_motion, start)},
     {"stop", SCHEMA_NUMBER, "when it ends", .unit = "s", .standard = "never", AT_LEAST(0.0),
-     .word = "never", .word_value = INFINITY, AT(struct job_body, stop)},
+     .word = "never", .word_value = INFINITY, AT(struct job_motion, stop)},
+    END};
+
+static const struct schema_key driven_keys[] = {
+    {"kind", SCHEMA_CHOICE, "slide along the axis, or turn about it", .required = true,
+     .choices = drives, AT(struct job_body, driven.kind)},
+    {"axis", SCHEMA_DIRECTION, "direction that counts as positive, or the right hand's thumb",
+     .required = true, AT(struct job_body, driven.axis)},
+    {"point", SCHEMA_NUMBER, "a point of the axis", .unit = "m", .required = true,
+     BETWEEN(-FAR, FAR), .kinds = KIND(JOB_DRIVE_TURN), AT(struct job_body, driven.point)},
+    {"mass", SCHEMA_NUMBER, "mass; gravity along the axis acts on it", .unit = "kg",
+     .required = true, ABOVE_TO(0.0, 1e12), .kinds = KIND(JOB_DRIVE_SLIDE),
+     AT(struct job_body, driven.mass)},
+    {"inertia", SCHEMA_NUMBER,
+     "moment of inertia about the axis; the centre of mass lies on the axis", .unit = "kg m2",
+     .required = true, ABOVE_TO(0.0, 1e12), .kinds = KIND(JOB_DRIVE_TURN),
+     AT(struct job_body, driven.inertia)},
+    {"force", SCHEMA_NUMBER, "applied force along the axis, besides gravity", .unit = "N",
+     .standard = "0", BETWEEN(-1e12, 1e12), .kinds = KIND(JOB_DRIVE_SLIDE),
+     AT(struct job_body, driven.force)},
+    {"torque", SCHEMA_NUMBER, "applied torque about the axis", .unit = "N m", .standard = "0",
+     BETWEEN(-1e12, 1e12), .kinds = KIND(JOB_DRIVE_TURN), AT(struct job_body, driven.torque)},
+    {"speed", SCHEMA_NUMBER, "speed along the axis at the start", .unit = "m/s",
+     .standard = "0", BETWEEN(-FAR, FAR), .kinds = KIND(JOB_DRIVE_SLIDE),
+     AT(struct job_body, driven.speed)},
+    {"rate", SCHEMA_NUMBER, "angular velocity about the axis at the start", .unit = "rad/s",
+     .standard = "0", BETWEEN(-FAR, FAR), .kinds = KIND(JOB_DRIVE_TURN),
+     AT(struct job_body, driven.rate)},
+    {"damping", SCHEMA_NUMBER,
+     "a force of -damping x mass x speed, or a torque of -damping x inertia x rate",
+     .unit = "1/s", .standard = "0", BETWEEN(0.0, 1e9), AT(struct job_body, driven.damping)},
+    {"friction", SCHEMA_NUMBER, "dry friction of the guide: the most it holds against",
+     .unit = "N", .standard = "0", BETWEEN(0.0, 1e12), .kinds = KIND(JOB_DRIVE_SLIDE),
+     AT(struct job_body, driven.friction)},
+    {"drag", SCHEMA_NUMBER, "dry friction of the bearing: the most it holds against",
+     .unit = "N m", .standard = "0", BETWEEN(0.0, 1e12), .kinds = KIND(JOB_DRIVE_TURN),
+     AT(struct job_body, driven.drag)},
+    {"travel", SCHEMA_NUMBER,
+     "least and greatest way along the axis from the place at the start; stops that take all "
+     "speed; without limits when left out",
+     .unit = "m", BETWEEN(-FAR, FAR), .kinds = KIND(JOB_DRIVE_SLIDE),
+     GIVEN(struct job_body, driven.limited), AT(struct job_body, driven.travel)},
+    {"angles", SCHEMA_NUMBER, "least and greatest angle, likewise", .unit = "rad",
+     BETWEEN(-1e8, 1e8), .kinds = KIND(JOB_DRIVE_TURN), GIVEN(struct job_body, driven.limited),
+     AT(struct job_body, driven.angles)},
+    {"start", SCHEMA_NUMBER, "when it is released; held until then", .unit = "s",
+     .standard = "0", BETWEEN(0.0, 1e9), AT(struct job_body, driven.start)},
+    END};
+
+static const struct schema_key free_keys[] = {
+    {"density", SCHEMA_NUMBER,
+     "mass per volume of what the surface encloses, which gives mass, centre and inertia; the "
+     "surface must be closed",
+     .unit = "kg/m3", ABOVE_TO(0.0, 1e9), GIVEN(struct job_body, free.density),
+     AT(struct job_body, free.density)},
+    {"mass", SCHEMA_NUMBER, "mass, with `inertia` and `centre`, in place of `density`",
+     .unit = "kg", ABOVE_TO(0.0, 1e12), GIVEN(struct job_body, free.mass),
+     AT(struct job_body, free.mass)},
+    {"inertia", SCHEMA_NUMBER,
+     "tensor of inertia about the centre of mass: xx, yy, zz, xy, xz, yz", .unit = "kg m2",
+     BETWEEN(-1e12, 1e12), GIVEN(struct job_body, free.has_inertia),
+     AT(struct job_body, free.inertia)},
+    {"centre", SCHEMA_NUMBER, "centre of mass at the start", .unit = "m", BETWEEN(-FAR, FAR),
+     GIVEN(struct job_body, free.has_centre), AT(struct job_body, free.centre)},
+    {"velocity", SCHEMA_NUMBER, "velocity of the centre at the start", .unit = "m/s",
+     .standard = ZERO, BETWEEN(-FAR, FAR), AT(struct job_body, free.velocity)},
+    {"spin", SCHEMA_NUMBER, "angular velocity at the start", .unit = "rad/s", .standard = ZERO,
+     BETWEEN(-FAR, FAR), AT(struct job_body, free.spin)},
+    {"damping", SCHEMA_NUMBER,
+     "a force of -damping x mass x velocity, and -damping x the angular momentum as torque",
+     .unit = "1/s", .standard = "0", BETWEEN(0.0, 1e9), AT(struct job_body, free.damping)},
+    {"start", SCHEMA_NUMBER, "when it is released; held until then", .unit = "s",
+     .standard = "0", BETWEEN(0.0, 1e9), AT(struct job_body, free.start)},
     END};
 
 static const struct schema_key body_keys[] = {
@@ -295,7 +428,42 @@ static const struct schema_key body_keys[] = {
     {"model", SCHEMA_CHOICE, "how it deforms: not at all", .standard = "rigid",
      .choices = models},
     {"geometry", SCHEMA_GROUP, "its surface", .required = true, .inside = geometry_keys},
-    {"motion", SCHEMA_GROUP, "how it moves; at rest when left out", .inside = motion_keys},
+    {"motion", SCHEMA_LIST,
+     "how it moves as prescribed; one mapping, or several in sequence or together: each moves "
+     "what those before it have made of the body, about points and along directions fixed in "
+     "space",
+     .single = true, GIVEN(struct job_body, n_motions), BETWEEN(1.0, 100.0),
+     .inside = motion_keys, LIST_AT(struct job_body, motions, n_motions)},
+    {"driven", SCHEMA_GROUP,
+     "moved along or about one axis by forces, those of the spheres and others: a piston under "
+     "a load, a drum on its bearings; in place of `motion`",
+     .inside = driven_keys, GIVEN(struct job_body, driven.given)},
+    {"free", SCHEMA_GROUP,
+     "moved in all directions by gravity and the spheres, in place of `motion`; it does not "
+     "feel other bodies",
+     .inside = free_keys, GIVEN(struct job_body, free.given)},
+    {"active", SCHEMA_NUMBER,
+     "times between which it is there, like a plug that is drawn; always when left out",
+     .unit = "s", BETWEEN(0.0, 1e9), GIVEN(struct job_body, comes_and_goes),
+     AT(struct job_body, active)},
+    END};
+
+static const struct schema_key gravity_turn_keys[] = {
+    {"axis", SCHEMA_DIRECTION, "about which gravity turns; the right hand's thumb",
+     .required = true, AT(struct job, gravity_turn.axis)},
+    {"rate", SCHEMA_NUMBER, "angular velocity of its direction", .unit = "rad/s",
+     .required = true, BETWEEN(-FAR, FAR), AT(struct job, gravity_turn.rate)},
+    {"start", SCHEMA_NUMBER, "when it begins to turn", .unit = "s", .standard = "0",
+     BETWEEN(0.0, 1e9), AT(struct job, gravity_turn.start)},
+    {"stop", SCHEMA_NUMBER, "when it ends", .unit = "s", .standard = "never", AT_LEAST(0.0),
+     .word = "never", .word_value = INFINITY, AT(struct job, gravity_turn.stop)},
+    END};
+
+static const struct schema_key gravity_table_keys[] = {
+    {"time", SCHEMA_NUMBER, "ascending; before the first and after the last it is constant",
+     .unit = "s", .required = true, BETWEEN(0.0, 1e9), AT(struct job_gravity, time)},
+    {"gravity", SCHEMA_NUMBER, "acceleration at that time; linear in between", .unit = "m/s2",
+     .required = true, BETWEEN(-FAR, FAR), AT(struct job_gravity, gravity)},
     END};
 
 static const struct schema_key section_keys[] = {
@@ -427,6 +595,11 @@ const struct schema_key job_keys[] = {
      .standard = "1", BETWEEN(0.0, 1e15), AT(struct job, seed)},
     {"gravity", SCHEMA_NUMBER, "acceleration of gravity", .unit = "m/s2",
      .standard = "[0, 0, -9.81]", BETWEEN(-FAR, FAR), AT(struct job, gravity)},
+    {"gravity_turn", SCHEMA_GROUP, "turns gravity, as a tilted or rocking frame feels it",
+     .inside = gravity_turn_keys, GIVEN(struct job, gravity_turn.axis)},
+    {"gravity_table", SCHEMA_LIST, "gravity over time; `gravity` is then not used",
+     BETWEEN(1.0, 10000.0), GIVEN(struct job, n_gravity_table), .inside = gravity_table_keys,
+     LIST_AT(struct job, gravity_table, n_gravity_table)},
     {"damping", SCHEMA_NUMBER,
      "mass-proportional damping: a force of -damping x mass x velocity on every sphere, and "
      "a moment likewise",
@@ -438,7 +611,8 @@ const struct schema_key job_keys[] = {
     {"spheres", SCHEMA_LIST, "groups of spheres; ids run through them in this order",
      .required = true, BETWEEN(1.0, 10000.0), .inside = spheres_keys,
      LIST_AT(struct job, spheres, n_spheres)},
-    {"bodies", SCHEMA_LIST, "surfaces of quads and triangles, at rest or moving as prescribed",
+    {"bodies", SCHEMA_LIST,
+     "surfaces of quads and triangles: at rest, moving as prescribed or moved by forces",
      UP_TO(10000.0), .inside = body_keys, LIST_AT(struct job, bodies, n_bodies)},
     {"sections", SCHEMA_LIST,
      "planes, discs and rectangles that count what passes through them", UP_TO(60.0),

@@ -222,7 +222,8 @@ const char *schema_expected(const struct schema_key *key, char text[SCHEMA_EXPEC
     case SCHEMA_GROUP:
         return "a mapping (key: value)";
     case SCHEMA_LIST:
-        snprintf(text, SCHEMA_EXPECTED, "a list of %s%.0f mappings (- key: value)",
+        snprintf(text, SCHEMA_EXPECTED, "%s list of %s%.0f mappings (- key: value)",
+                 key->single ? "a mapping, or a" : "a",
                  (key->bounds & SCHEMA_AT_LEAST) != 0 ? "1 to " : "at most ", key->max);
         return text;
     case SCHEMA_NAMED:
@@ -585,6 +586,14 @@ static void elements_read(const struct item *item)
     store_list(item, list, node->n);
 }
 
+/* A mapping that stands for a list of one. */
+static void element_read(const struct item *item)
+{
+    char *element = array_allocate(1, item->key->element);
+    schema_read(item->reader, item->key->inside, item->node, item->path, element);
+    store_list(item, element, 1);
+}
+
 static void value_read(const struct item *item)
 {
     void *into = item->into + item->key->offset;
@@ -644,7 +653,10 @@ static void value_read(const struct item *item)
         break;
     case SCHEMA_LIST:
     case SCHEMA_NAMED:
-        elements_read(item);
+        if (item->key->single && item->node->kind == YAML_TREE_MAPPING)
+            element_read(item);
+        else
+            elements_read(item);
         break;
     case SCHEMA_INCLUDE:
         break;

@@ -64,6 +64,7 @@ struct schema_key {
     size_t given, given_size;
     size_t count;   /* offset of the int that counts elements */
     size_t element; /* bytes of an element */
+    bool single;    /* a list of mappings: a mapping alone stands for a list of one */
     const struct schema_key *inside;
 };
 

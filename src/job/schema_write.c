@@ -181,6 +181,12 @@ static void elements_write(struct page *page, const struct schema_key *key, cons
         return;
     }
     fputc('\n', page->out);
+    if (key->single && n == 1) {
+        page->indent += 2;
+        table_write(page, key->inside, list);
+        page->indent -= 2;
+        return;
+    }
     for (int i = 0; i < n; i++) {
         const char *element = list + (size_t)i * key->element;
         if (named)

@@ -1,129 +1,214 @@
 /*
- * Rigid bodies and their prescribed motion: see body.h.
+ * Rigid bodies and their motion: see body.h.
  *
- * A body's vertices follow from its reference mesh and the time alone; nothing is accumulated,
- * so a restart, or a rank that meets the body late, finds the same bits.  The rotation is
- * Rodrigues' formula about the pivot; the pivot travels with the translation.
+ * A prescribed body's vertices follow from its reference mesh and the time alone; nothing is
+ * accumulated, so a restart, or a rank that meets the body late, finds the same bits.  Its
+ * motions are taken one after the other, as the job lists them.
  */
 #include "model/body.h"
 
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
-#include "base/elementary.h"
 #include "job/job.h"
 #include "model/geometry.h"
+#include "model/motion.h"
+#include "model/rigid.h"
 
-/* How long the motion has lasted at a time [s]. */
-static double moving_time(const struct body *body, double time)
+static const struct vec3 ZERO = {0.0, 0.0, 0.0};
+
+/* ----------------------------------------------------------------------------- prescribed */
+
+/* Do places at two times differ? */
+static bool has_moved(const struct body *body, double time)
 {
-    const double until = time < body->stop ? time : body->stop;
-    return until > body->start ? until - body->start : 0.0;
+    bool moved = false;
+    for (int m = 0; m < body->n_motions; m++)
+        moved = moved || motion_duration(&body->motions[m], time) !=
+                             motion_duration(&body->motions[m], body->placed_at);
+    return moved;
 }
 
-static bool is_moving(const struct body *body, double time)
-{
-    return time > body->start && time < body->stop;
-}
-
-/* r turned by an angle about an axis of length 1 (Rodrigues). */
-static struct vec3 turned(struct vec3 r, struct vec3 axis, double sine, double cosine)
-{
-    const struct vec3 along = vec3_scale(vec3_dot(axis, r) * (1.0 - cosine), axis);
-    const struct vec3 across = vec3_scale(sine, vec3_cross(axis, r));
-    return vec3_add(vec3_add(vec3_scale(cosine, r), across), along);
-}
-
-static void place_vertices(struct body *body, double duration)
+/* (3.1) */
+static void place_vertices(struct body *body, double time)
 {
     struct mesh *mesh = &body->mesh;
-    const double angle = body->rate * duration;
-    const double sine = elementary_sin(angle), cosine = elementary_cos(angle);
-    const struct vec3 shift = vec3_scale(duration, body->velocity);
-    for (int v = 0; v < mesh->n_vertices; v++) {
-        struct vec3 x = mesh->reference[v];
-        if (body->rate != 0.0)
-            x = vec3_add(body->pivot,
-                         turned(vec3_sub(x, body->pivot), body->axis, sine, cosine));
-        mesh->place[v] = vec3_add(x, shift);
+    for (int v = 0; v < mesh->n_vertices; v++)
+        mesh->place[v] = mesh->reference[v];
+    for (int m = 0; m < body->n_motions; m++) {
+        const struct motion_place place = motion_place(&body->motions[m], time);
+        for (int v = 0; v < mesh->n_vertices; v++)
+            mesh->place[v] = motion_apply(&place, mesh->place[v]);
     }
-    body->pivot_now = vec3_add(body->pivot, shift);
-    body->placed_for = duration;
+    body->placed_at = time;
     mesh_update(mesh);
 }
 
-/* No vertex is ever faster than the translation and the rotation of the farthest one together.
- */
-static double fastest(const struct body *body)
+/* Velocities of all motions together, half a step before `time`.                          (3.2) */
+static void find_motion(struct body *body, double time, double half, double dt)
 {
-    double arm = 0.0; /* [m] */
-    for (int v = 0; v < body->mesh.n_vertices; v++) {
-        const struct vec3 r = vec3_sub(body->mesh.reference[v], body->pivot);
-        const double across = vec3_norm(vec3_cross(body->axis, r));
-        arm = across > arm ? across : arm;
+    struct vec3 point = ZERO, velocity = ZERO, spin = ZERO;
+    for (int m = 0; m < body->n_motions; m++) {
+        const struct job_motion *motion = &body->motions[m];
+        const struct motion_place place = motion_place(motion, time);
+        const struct motion_rate rate = motion_rate(motion, half, dt);
+        if (m == 0)
+            point = place.pivot;
+        point = motion_apply(&place, point);
+        const struct vec3 arm =
+            vec3_sub(point, vec3_add(place.pivot, place.shift)); /* zero for the first */
+        velocity = vec3_add(vec3_add(motion_turn(&place, velocity), rate.velocity),
+                            vec3_cross(rate.spin, arm));
+        spin = vec3_add(motion_turn(&place, spin), rate.spin);
     }
-    const double spin = body->rate < 0.0 ? -body->rate : body->rate;
-    return vec3_norm(body->velocity) + spin * arm;
+    body->pivot_now = point;
+    body->velocity_now = velocity;
+    body->spin_now = spin;
 }
 
-static void body_build(struct body *body, const struct job_body *asked)
+/* The farthest that a vertex is from a motion's axis. */
+static double arm_of(const struct mesh *mesh, const struct motion_place *place)
+{
+    double most = 0.0;
+    for (int v = 0; v < mesh->n_vertices; v++) {
+        const struct vec3 r = vec3_sub(mesh->reference[v], place->pivot);
+        const double across = vec3_norm(vec3_cross(place->axis, r));
+        most = across > most ? across : most;
+    }
+    return most;
+}
+
+/* No vertex is ever faster than the motions of one time together, each with the arm that those
+ * before it may have given the vertex by the end of the run. */
+static double fastest(const struct body *body, double end)
+{
+    double *speeds = array_allocate((size_t)body->n_motions, sizeof *speeds);
+    double strayed = 0.0, most = 0.0; /* [m] from the place at the start, [m/s] */
+    for (int m = 0; m < body->n_motions; m++) {
+        const struct job_motion *motion = &body->motions[m];
+        const struct motion_place place = motion_place(motion, 0.0);
+        const double spin = motion_spin_most(motion);
+        const double arm = arm_of(&body->mesh, &place) + strayed;
+        speeds[m] = motion_speed_most(motion) + spin * arm;
+        strayed += motion_shift_most(motion, end) + (spin > 0.0 ? 2.0 * arm : 0.0);
+    }
+    /* The most of all acts when one of them begins. */
+    for (int m = 0; m < body->n_motions; m++) {
+        double sum = 0.0;
+        for (int k = 0; k < body->n_motions; k++)
+            if (body->motions[k].start <= body->motions[m].start &&
+                body->motions[k].stop > body->motions[m].start)
+                sum += speeds[k];
+        most = sum > most ? sum : most;
+    }
+    free(speeds);
+    return most;
+}
+
+/* ----------------------------------------------------------------------------------- forced */
+
+static void place_forced(struct body *body)
+{
+    struct mesh *mesh = &body->mesh;
+    for (int v = 0; v < mesh->n_vertices; v++)
+        mesh->place[v] = rigid_place(body->rigid, mesh->reference[v]);
+    rigid_motion(body->rigid, &body->pivot_now, &body->velocity_now, &body->spin_now);
+    body->speed_max = rigid_speed(body->rigid);
+    mesh_update(mesh);
+}
+
+/* -------------------------------------------------------------------------------------- all */
+
+static void copy_motions(struct body *body, const struct job_body *asked)
+{
+    body->motions = array_allocate((size_t)asked->n_motions, sizeof *body->motions);
+    for (int m = 0; m < asked->n_motions; m++) {
+        struct job_motion *motion = &body->motions[m];
+        *motion = asked->motions[m];
+        const size_t n = (size_t)motion->path.n;
+        motion->path.points = array_allocate(n, sizeof *motion->path.points);
+        if (n > 0)
+            memcpy(motion->path.points, asked->motions[m].path.points,
+                   n * sizeof *motion->path.points);
+    }
+}
+
+static void body_build(struct body *body, const struct job_body *asked, double end)
 {
     struct geometry geometry;
     geometry_build(&geometry, asked);
-    *body = (struct body){
-        .name = array_string(asked->name),
-        .material = asked->material,
-        .velocity = asked->velocity,
-        .pivot = asked->pivot,
-        .axis = asked->axis,
-        .rate = vec3_norm(asked->axis) > 0.0 ? asked->rate : 0.0,
-        .start = asked->start,
-        .stop = asked->stop,
-        .pivot_now = asked->pivot,
-        .placed_for = 0.0,
-    };
+    *body = (struct body){.name = array_string(asked->name),
+                          .material = asked->material,
+                          .n_motions = asked->n_motions,
+                          .exists = true,
+                          .comes_and_goes = asked->comes_and_goes,
+                          .active = {asked->active[0], asked->active[1]}};
+    copy_motions(body, asked);
     mesh_build(&body->mesh, geometry.n_vertices, geometry.vertices, geometry.n_facets,
                (const int(*)[4])geometry.facets);
     geometry_clear(&geometry);
-    body->speed_max = fastest(body);
-    body->moves = body->speed_max > 0.0 && body->stop > body->start;
-    if (!body->moves)
-        body->speed_max = 0.0;
+    if (asked->driven.given || asked->free.given) {
+        body->rigid = array_allocate(1, sizeof *body->rigid);
+        rigid_build(body->rigid, asked, &body->mesh);
+        body->speed_max = rigid_speed(body->rigid);
+        body->moves = true;
+        return;
+    }
+    for (int m = 0; m < body->n_motions; m++)
+        body->moves = body->moves || motion_moves(&body->motions[m]);
+    body->speed_max = body->moves ? fastest(body, end) : 0.0;
 }
 
 void bodies_build(struct bodies *bodies, const struct job *job)
 {
-    bodies->n = job->n_bodies;
+    *bodies = (struct bodies){.n = job->n_bodies};
     bodies->list = array_allocate((size_t)job->n_bodies, sizeof *bodies->list);
-    for (int b = 0; b < bodies->n; b++)
-        body_build(&bodies->list[b], &job->bodies[b]);
-    bodies_place(bodies, 0, 0.0);
+    for (int b = 0; b < bodies->n; b++) {
+        body_build(&bodies->list[b], &job->bodies[b], job->time.end);
+        bodies->n_forced += bodies->list[b].rigid != NULL;
+    }
+    bodies_place(bodies, 0, job->time.step > 0.0 ? job->time.step : 1.0);
 }
 
 void bodies_clear(struct bodies *bodies)
 {
     for (int b = 0; b < bodies->n; b++) {
-        free(bodies->list[b].name);
-        mesh_clear(&bodies->list[b].mesh);
+        struct body *body = &bodies->list[b];
+        for (int m = 0; m < body->n_motions; m++)
+            free(body->motions[m].path.points);
+        free(body->motions);
+        free(body->rigid);
+        free(body->name);
+        mesh_clear(&body->mesh);
     }
     free(bodies->list);
-    *bodies = (struct bodies){0, NULL};
+    *bodies = (struct bodies){0, NULL, 0};
+}
+
+bool body_exists(const struct body *body, int64_t step, double dt)
+{
+    const double *active = body->active;
+    if (!body->comes_and_goes)
+        return true;
+    return (double)step >= active[0] / dt - 0.5 && (double)step < active[1] / dt - 0.5;
 }
 
 void bodies_place(struct bodies *bodies, int64_t step, double dt)
 {
     const double time = (double)step * dt, half_before = ((double)step - 0.5) * dt; /* [s] */
-    const struct vec3 zero = {0.0, 0.0, 0.0};
     for (int b = 0; b < bodies->n; b++) {
         struct body *body = &bodies->list[b];
+        body->exists = body_exists(body, step, dt);
         if (!body->moves)
             continue;
-        const bool now = is_moving(body, half_before);
-        body->velocity_now = now ? body->velocity : zero;
-        body->spin_now = now ? vec3_scale(body->rate, body->axis) : zero;
+        if (body->rigid != NULL) {
+            place_forced(body);
+            continue;
+        }
+        find_motion(body, time, half_before, dt);
         /* Before its start and after its stop a body costs nothing either. */
-        const double duration = moving_time(body, time);
-        if (duration != body->placed_for)
-            place_vertices(body, duration);
+        if (has_moved(body, time))
+            place_vertices(body, time);
     }
 }

@@ -1,8 +1,9 @@
 /*
- * Rigid bodies: surfaces that are at rest or move as prescribed.
+ * Rigid bodies: surfaces that are at rest, move as prescribed (model/motion) or are moved by
+ * forces (model/rigid), and may come and go.
  *
- * Motion is a function of step x dt alone (never accumulated), so a restart finds the same
- * bits. The sine and cosine are our own (base/elementary.h).
+ * Prescribed motion is a function of step x dt alone (never accumulated), so a restart finds
+ * the same bits.  The sine and cosine are our own (base/elementary.h).
  */
 #ifndef TREMIE_MODEL_BODY_H
 #define TREMIE_MODEL_BODY_H
@@ -14,34 +15,43 @@
 #include "model/mesh.h"
 
 struct job;
-struct job_body;
+struct job_motion;
+struct rigid;
 
 struct body {
     char *name;
     int material;
     struct mesh mesh;
     bool moves;
-    /* Prescribed motion, as in struct job_body. */
-    struct vec3 velocity, pivot, axis;
-    double rate, start, stop;
+    int n_motions; /* prescribed, in the order in which they act */
+    struct job_motion *motions;
+    struct rigid *rigid; /* of a body that forces move, else NULL */
     /* Present motion, set by bodies_place(): the point x of the body moves at
      * velocity_now + spin_now x (x - pivot_now). */
     struct vec3 velocity_now; /* [m/s] */
     struct vec3 spin_now;     /* [rad/s] */
     struct vec3 pivot_now;    /* [m] */
-    double placed_for;        /* how long it had moved where the vertices now are [s] */
-    double speed_max;         /* fastest vertex over all time, for allowances [m/s] */
+    bool exists;              /* at this step; one that does not touches nothing */
+    bool comes_and_goes;      /* does that ever change? */
+    double active[2];         /* then: when it comes and goes [s] */
+    double placed_at;         /* time at which the vertices are where they are [s] */
+    double speed_max; /* fastest vertex, for allowances: over all time, or of a body that forces
+                       * move at present [m/s] */
 };
 
 struct bodies {
     int n;
     struct body *list;
+    int n_forced; /* bodies that forces move */
 };
 
 void bodies_build(struct bodies *bodies, const struct job *job);
 void bodies_clear(struct bodies *bodies);
 /* Puts all moving bodies where they are at time step * dt, with the velocity they have at
- * (step - 1/2) * dt as the spheres' half-step velocities have.  Bodies at rest cost nothing. */
+ * (step - 1/2) * dt as the spheres' half-step velocities have; those that forces move are where
+ * their state says.  Bodies at rest cost nothing. */
 void bodies_place(struct bodies *bodies, int64_t step, double dt);
+/* Is the body there at a step? */
+bool body_exists(const struct body *body, int64_t step, double dt);
 
 #endif

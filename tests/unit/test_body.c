@@ -7,7 +7,7 @@ static char NAME[] = "body";
 
 static struct job_body at_rest(enum job_geometry geometry)
 {
-    return (struct job_body){.name = NAME, .geometry = geometry, .stop = (double)INFINITY};
+    return (struct job_body){.name = NAME, .geometry = geometry};
 }
 
 static void build(struct bodies *bodies, struct job_body *asked)
@@ -88,21 +88,22 @@ TEST(a_hopper_has_four_sloping_quads)
     bodies_clear(&bodies);
 }
 
-static struct job_body spinning_box(void)
+static struct job_body spinning_box(struct job_motion *motion)
 {
     struct job_body asked = at_rest(JOB_GEOMETRY_BOX);
     asked.min = (struct vec3){1, -1, -1};
     asked.max = (struct vec3){2, 1, 1};
-    asked.velocity = (struct vec3){0, 0, 0.5};
-    asked.pivot = (struct vec3){0, 0, 0};
-    asked.axis = (struct vec3){0, 0, 1};
-    asked.rate = 2.0;
+    *motion = (struct job_motion){
+        .velocity = {0, 0, 0.5}, .axis = {0, 0, 1}, .rate = 2.0, .stop = (double)INFINITY};
+    asked.n_motions = 1;
+    asked.motions = motion;
     return asked;
 }
 
 TEST(motion_is_a_rotation_about_the_pivot_and_a_translation)
 {
-    struct job_body asked = spinning_box();
+    struct job_motion motion;
+    struct job_body asked = spinning_box(&motion);
     struct bodies bodies;
     build(&bodies, &asked);
     const double dt = 1e-3;
@@ -122,7 +123,8 @@ TEST(motion_is_a_rotation_about_the_pivot_and_a_translation)
 
 TEST(the_place_at_a_step_does_not_depend_on_the_way_there)
 {
-    struct job_body asked = spinning_box();
+    struct job_motion motion;
+    struct job_body asked = spinning_box(&motion);
     struct bodies walked, jumped;
     build(&walked, &asked);
     build(&jumped, &asked);
@@ -138,9 +140,10 @@ TEST(the_place_at_a_step_does_not_depend_on_the_way_there)
 
 TEST(a_body_moves_only_between_start_and_stop)
 {
-    struct job_body asked = spinning_box();
-    asked.start = 0.1;
-    asked.stop = 0.3;
+    struct job_motion motion;
+    struct job_body asked = spinning_box(&motion);
+    motion.start = 0.1;
+    motion.stop = 0.3;
     struct bodies bodies;
     build(&bodies, &asked);
     const struct body *body = &bodies.list[0];
@@ -157,7 +160,8 @@ TEST(a_body_moves_only_between_start_and_stop)
 
 TEST(no_vertex_is_faster_than_speed_max)
 {
-    struct job_body asked = spinning_box();
+    struct job_motion motion;
+    struct job_body asked = spinning_box(&motion);
     struct bodies bodies;
     build(&bodies, &asked);
     const struct body *body = &bodies.list[0];

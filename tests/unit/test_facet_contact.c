@@ -147,8 +147,7 @@ static struct job_body mesh_body(int n_vertices, struct vec3 *vertices, int n_fa
                              .n_vertices = n_vertices,
                              .vertices = vertices,
                              .n_facets = n_facets,
-                             .facets = facets,
-                             .stop = (double)INFINITY};
+                             .facets = facets};
 }
 
 /* SLIVERS: every other column of MIXED is a millionth as wide as the next. */
@@ -198,11 +197,8 @@ static struct job_body sheet_body(struct sheet_store *store, enum sheet kind, do
 
 TEST(a_corner_of_three_walls_has_three_contacts)
 {
-    struct job_body box = {.name = NAME,
-                           .geometry = JOB_GEOMETRY_BOX,
-                           .max = {5, 5, 5},
-                           .open = JOB_SIDE_TOP,
-                           .stop = (double)INFINITY};
+    struct job_body box = {
+        .name = NAME, .geometry = JOB_GEOMETRY_BOX, .max = {5, 5, 5}, .open = JOB_SIDE_TOP};
     struct scene scene;
     scene_build(&scene, STEEL, 0.5, 1.0, 1, &box, 1, 1.0);
     EXPECT(contacts_at(&scene, 0.999, 0.999, 0.999) == 3);
@@ -219,8 +215,7 @@ TEST(a_corner_of_three_walls_has_three_contacts)
 
 TEST(a_convex_edge_has_one_contact_and_turns_its_normal_smoothly)
 {
-    struct job_body box = {
-        .name = NAME, .geometry = JOB_GEOMETRY_BOX, .max = {5, 5, 5}, .stop = (double)INFINITY};
+    struct job_body box = {.name = NAME, .geometry = JOB_GEOMETRY_BOX, .max = {5, 5, 5}};
     struct scene scene;
     scene_build(&scene, STEEL, 0.5, 1.0, 1, &box, 1, 1.0);
     /* Along the top to the edge, around it, down the side, always as deep. */
@@ -389,10 +384,11 @@ static double worst_difference(enum sheet kind, const struct crossing *crossing,
     const struct vec3 normal =
         slopes ? (struct vec3){-0.28, 0.0, 0.96} : (struct vec3){0, 0, 1};
     double worst = 0.0;
+    struct job_motion motion = {
+        .velocity = drift, .axis = normal, .rate = crossing->rate, .stop = (double)INFINITY};
     for (int s = 0; s < 2; s++) {
-        bodies[s].velocity = drift;
-        bodies[s].axis = normal;
-        bodies[s].rate = crossing->rate;
+        bodies[s].n_motions = 1;
+        bodies[s].motions = &motion;
         scene_build(&scenes[s], RUBBER, 20.0, 0.5, 1, &bodies[s], 1, 1.0);
     }
     for (int k = 1; k <= STEPS; k++) {
@@ -549,16 +545,18 @@ TEST(the_spring_keeps_its_size_when_it_turns)
 static void start_rough_scene(struct scene *scene, struct sheet_store *store, int n)
 {
     random_state = 7;
+    struct job_motion motion = {.velocity = {0.2, 0.0, 0.1},
+                                .pivot = {4.0, 4.0, 0.5},
+                                .axis = {0.6, 0.0, 0.8},
+                                .rate = 0.3,
+                                .stop = 0.9};
     struct job_body bodies[2] = {sheet_body(store, MIXED, 8.0, false, 0.25),
                                  {.name = NAME,
                                   .geometry = JOB_GEOMETRY_BOX,
                                   .min = {-0.5, -0.5, -2.0},
                                   .max = {8.5, 8.5, 3.0},
-                                  .velocity = {0.2, 0.0, 0.1},
-                                  .pivot = {4.0, 4.0, 0.5},
-                                  .axis = {0.6, 0.0, 0.8},
-                                  .rate = 0.3,
-                                  .stop = 0.9}};
+                                  .n_motions = 1,
+                                  .motions = &motion}};
     scene_build(scene, RUBBER, 0.8, 0.6, 2, bodies, n, 0.4);
     scene->dt = 2e-3;
     scene->gravity = (struct vec3){0, 0, -9.81};
@@ -665,11 +663,8 @@ TEST(lists_made_at_any_moment_give_the_same_bits)
 
 TEST(a_search_keeps_what_touches_even_out_of_reach)
 {
-    struct job_body plane = {.name = NAME,
-                             .geometry = JOB_GEOMETRY_PLANE,
-                             .normal = {0, 0, 1},
-                             .extent = 8.0,
-                             .stop = (double)INFINITY};
+    struct job_body plane = {
+        .name = NAME, .geometry = JOB_GEOMETRY_PLANE, .normal = {0, 0, 1}, .extent = 8.0};
     struct scene scene;
     scene_build(&scene, RUBBER, 0.5, 1.0, 1, &plane, 2, 1.0);
     for (int last = 0; last < 2; last++) { /* in the middle of the list, and at its end */
@@ -742,19 +737,19 @@ TEST(a_body_feels_the_opposite_of_what_its_spheres_feel)
 
 TEST(a_moving_wall_is_a_moving_sphere_seen_from_the_wall)
 {
-    struct job_body planes[2] = {{.name = NAME,
-                                  .geometry = JOB_GEOMETRY_PLANE,
-                                  .normal = {0, 0, 1},
-                                  .extent = 8.0,
-                                  .stop = (double)INFINITY}};
+    struct job_body planes[2] = {
+        {.name = NAME, .geometry = JOB_GEOMETRY_PLANE, .normal = {0, 0, 1}, .extent = 8.0}};
     planes[1] = planes[0];
-    planes[1].velocity = (struct vec3){-0.3, 0.1, 0.2};
+    struct job_motion motion = {.velocity = {-0.3, 0.1, 0.2}, .stop = (double)INFINITY};
+    planes[1].n_motions = 1;
+    planes[1].motions = &motion;
     struct scene scenes[2];
     for (int s = 0; s < 2; s++) {
         scene_build(&scenes[s], RUBBER, 0.5, 0.7, 1, &planes[s], 1, 1.0);
         bodies_place(&scenes[s].bodies, 1, scenes[s].dt);
         const struct vec3 v = s == 0 ? (struct vec3){0.3, -0.1, -0.2} : (struct vec3){0, 0, 0};
-        const struct vec3 x = {0.0, 0.0, 0.99 + scenes[s].dt * planes[s].velocity.z};
+        const struct vec3 x = {0.0, 0.0,
+                               0.99 + scenes[s].dt * (s == 0 ? 0.0 : motion.velocity.z)};
         put_sphere(&scenes[s], 0, x, v, (struct vec3){0, 0, 0});
         search(&scenes[s], false);
         apply(&scenes[s]);
@@ -774,11 +769,8 @@ TEST(a_moving_wall_is_a_moving_sphere_seen_from_the_wall)
  * rigid plane is 1e6 times as stiff). */
 TEST(an_elastic_impact_on_a_plane_is_hertz)
 {
-    struct job_body plane = {.name = NAME,
-                             .geometry = JOB_GEOMETRY_PLANE,
-                             .normal = {0, 0, 1},
-                             .extent = 8.0,
-                             .stop = (double)INFINITY};
+    struct job_body plane = {
+        .name = NAME, .geometry = JOB_GEOMETRY_PLANE, .normal = {0, 0, 1}, .extent = 8.0};
     const struct job_material aluminium = {.density = 2699, .young = 70e9, .poisson = 0.3};
     struct scene scene;
     scene_build(&scene, aluminium, 0.0, 1.0, 1, &plane, 1, 0.1);

@@ -99,13 +99,12 @@ TEST(bodies_of_all_shapes)
     EXPECT(job_from(shapes, 0, NULL));
     EXPECT(job.n_bodies == 4);
     EXPECT(job.bodies[0].point.z == 0.01 && job.bodies[0].normal.z == 1.0);
-    EXPECT(job.bodies[0].axis.x == 0.0 && job.bodies[0].rate == 0.0);
-    EXPECT(job.bodies[0].stop > 1e300);
+    EXPECT(job.bodies[0].n_motions == 0 && !job.bodies[0].free.given);
     EXPECT(job.bodies[1].open == (JOB_SIDE_TOP | JOB_SIDE_X_MIN));
-    EXPECT(job.bodies[2].velocity.x == 1e-3 && job.bodies[2].start == 0.5 &&
-           job.bodies[2].stop == 1.0);
-    EXPECT(job.bodies[2].axis.y == 0.6 && job.bodies[2].axis.z == 0.8 &&
-           job.bodies[2].pivot.z == 1.0);
+    const struct job_motion *motion = job.bodies[2].motions;
+    EXPECT(job.bodies[2].n_motions == 1 && motion->velocity.x == 1e-3 && motion->start == 0.5 &&
+           motion->stop == 1.0);
+    EXPECT(motion->axis.y == 0.6 && motion->axis.z == 0.8 && motion->pivot.z == 1.0);
     EXPECT(job.bodies[2].outlet[1] == 2.0 && job.bodies[2].centre[0] == 1.0);
     EXPECT(job.bodies[3].n_vertices == 4 && job.bodies[3].vertices[3].y == 1e-3);
     EXPECT(job.bodies[3].n_facets == 2 && job.bodies[3].facets[0][3] == -1);
