@@ -8,6 +8,7 @@
 #include "base/comm.h"
 #include "base/report.h"
 #include "store/file.h"
+#include "store/surface_file.h"
 
 char *scene_newest(const char *run_folder)
 {
@@ -20,12 +21,28 @@ char *scene_newest(const char *run_folder)
     return path;
 }
 
+/* A body whose file has gone is shown without its surface. */
+static void read_surfaces(struct job *job)
+{
+    for (int b = 0; b < job->n_bodies; b++) {
+        struct job_body *body = &job->bodies[b];
+        const int64_t sum = body->sum;
+        char *why = surface_file_has(body) ? surface_file_read(body) : NULL;
+        if (why != NULL)
+            report_warn("body '%s' is missing: %s", body->name, why);
+        else if (body->sum != sum)
+            report_warn("%s has changed since the run", body->file);
+        free(why);
+    }
+}
+
 static void read_job(struct scene *scene, const char *path)
 {
     struct mistakes mistakes;
     mistakes_init(&mistakes);
     scene->has_job = job_read_text(&scene->job, path, scene->checkpoint.job_text, &mistakes);
     if (scene->has_job) {
+        read_surfaces(&scene->job);
         bodies_build(&scene->bodies, &scene->job);
         bodies_place(&scene->bodies, scene->checkpoint.step, scene->checkpoint.dt);
     } else {

@@ -100,9 +100,11 @@ static void print_bodies(const struct scene *scene)
         int n = 0;
         for (int k = 0; k < scene->checkpoint.n_facet_contacts; k++)
             n += scene->checkpoint.facet_contacts[k].body == b;
-        printf("body %-14s %d face%s of %s, %s, %d contact%s\n", body->name, body->mesh.n_faces,
-               body->mesh.n_faces == 1 ? "" : "s", scene->job.materials[body->material].name,
-               body->moves ? "moving" : "at rest", n, n == 1 ? "" : "s");
+        const int n_faces = body->mesh.n_faces + body->mesh.n_bands;
+        printf("body %-14s %d %sface%s of %s, %s, %d contact%s\n", body->name, n_faces,
+               body->mesh.n_bands > 0 ? "curved " : "", n_faces == 1 ? "" : "s",
+               scene->job.materials[body->material].name, body->moves ? "moving" : "at rest", n,
+               n == 1 ? "" : "s");
     }
 }
 

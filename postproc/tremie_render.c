@@ -231,12 +231,12 @@ static struct balls gather_balls(const struct scene *scene, bool no_bodies)
 
 /* ----------------------------------------------------------------------------------- bodies */
 
-/* Does the plane of the face part the viewer from the middle of the scene? */
-static bool face_is_before(const struct mesh *mesh, int face, struct vec3 eye,
-                           struct vec3 middle)
+/* Does the plane of a facet part the viewer from the middle of the scene? */
+static bool facet_is_before(const struct vec3 *corners, struct vec3 eye, struct vec3 middle)
 {
-    const struct vec3 corner = mesh->place[mesh->faces[face].vertices[0]];
-    const struct vec3 normal = mesh->face_normal[face];
+    const struct vec3 corner = corners[0];
+    const struct vec3 normal =
+        vec3_cross(vec3_sub(corners[1], corner), vec3_sub(corners[2], corner));
     return vec3_dot(normal, vec3_sub(eye, corner)) *
                vec3_dot(normal, vec3_sub(middle, corner)) <
            0.0;
@@ -246,14 +246,14 @@ static void draw_faces(struct canvas *canvas, const struct camera *camera,
                        const struct mesh *mesh, struct vec3 middle)
 {
     for (int before = 0; before < 2; before++)
-        for (int f = 0; f < mesh->n_faces; f++) {
-            if ((int)face_is_before(mesh, f, camera->eye, middle) != before)
-                continue;
+        for (int f = 0; f < mesh_n_shown(mesh); f++) {
+            const int *vertices;
+            const int n = mesh_shown(mesh, f, &vertices);
             struct vec3 corners[4];
-            for (int k = 0; k < mesh->faces[f].n; k++)
-                corners[k] = mesh->place[mesh->faces[f].vertices[k]];
-            canvas_facet(canvas, camera, mesh->faces[f].n, corners, GLASS,
-                         before ? 0.07 : 0.20);
+            for (int k = 0; k < n; k++)
+                corners[k] = mesh->place[vertices[k]];
+            if ((int)facet_is_before(corners, camera->eye, middle) == before)
+                canvas_facet(canvas, camera, n, corners, GLASS, before ? 0.07 : 0.20);
         }
 }
 

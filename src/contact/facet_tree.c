@@ -205,5 +205,8 @@ void facet_tree_query(const struct facet_tree *tree, const struct mesh *mesh,
                 add_face(tree, mesh, tree->order[k], centre, wide, found);
         i++;
     }
+    const int n = mesh_n_features(mesh);
+    for (int round = n - mesh->n_bands - mesh->n_rings; round < n; round++)
+        add_if_near(mesh, round, centre, wide, found);
     sort_features(found);
 }

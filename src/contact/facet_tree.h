@@ -5,7 +5,8 @@
  * knows where to go on when its box is missed, so a query is one loop without a stack. A few
  * large quads make one leaf, thousands of small triangles a deep tree; either way the cost
  * follows from what is near. The tree's shape comes from the reference mesh, once; when a body
- * has moved only the boxes are made anew. Drawback: boxes along the axes hold a large sloping
+ * has moved only the boxes are made anew. A round surface has few features, which are asked one
+ * by one. Drawback: boxes along the axes hold a large sloping
  * facet badly, so leaves test its plane.
  */
 #ifndef TREMIE_CONTACT_FACET_TREE_H

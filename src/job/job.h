@@ -109,8 +109,16 @@ enum job_geometry {
     JOB_GEOMETRY_PLANE,
     JOB_GEOMETRY_BOX,
     JOB_GEOMETRY_HOPPER,
-    JOB_GEOMETRY_MESH
+    JOB_GEOMETRY_MESH,
+    JOB_GEOMETRY_CYLINDER,
+    JOB_GEOMETRY_CONE,
+    JOB_GEOMETRY_CONICAL_HOPPER,
+    JOB_GEOMETRY_TUBE,
+    JOB_GEOMETRY_STL,
+    JOB_GEOMETRY_GMSH
 };
+
+enum job_cap { JOB_CAP_FROM = 1, JOB_CAP_TO = 2 }; /* closed ends */
 
 enum job_side { /* sides of a box that are left open */
                 JOB_SIDE_X_MIN = 1,
@@ -198,12 +206,28 @@ struct job_body {
     struct vec3 min, max;      /* box */
     int open;                  /* box: sides left open, a set of enum job_side */
     double top[2], outlet[2];  /* hopper: openings, width along x and y [m] */
-    double z[2];               /* hopper: heights of outlet and top [m] */
-    double centre[2];          /* hopper: axis, x and y [m] */
-    int n_vertices;            /* mesh */
+    double z[2];               /* hoppers: heights of outlet and top [m] */
+    double centre[2];          /* hoppers: axis, x and y [m] */
+    struct vec3 from, to;      /* cylinder, cone, tube: ends of the axis [m] */
+    double radius;             /* cylinder [m] */
+    double radii[2];           /* cone: at from and to; conical hopper: outlet, top [m] */
+    double inner, outer;       /* tube: radii [m] */
+    int caps;                  /* cylinder, cone: closed ends, a set of enum job_cap */
+    int segments;              /* facets around the axis; 0: the curved surface itself */
+    char *file;                /* STL, Gmsh */
+    int64_t sum;               /* checksum of that file */
+    char *group;               /* Gmsh: physical group; NULL: all surfaces */
+    double merge;              /* mesh and files: vertices nearer than this are one [m] */
+    int n_vertices;            /* mesh; of a file once it has been read (store/surface_file) */
     struct vec3 *vertices;     /* [m] */
     int n_facets;
     int (*facets)[4]; /* vertex indices; a triangle has -1 last */
+    /* Then any shape is scaled about the origin (0: not), rotated by an angle about an axis
+     * through a point (axis 0: not), and moved. */
+    double scale;
+    struct vec3 turn_axis, turn_point;
+    double turn_angle; /* [rad] */
+    struct vec3 move;  /* [m] */
     /* Prescribed motion: each motion moves what those before it in the list have made of the
      * body. */
     int n_motions;

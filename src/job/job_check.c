@@ -12,6 +12,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 
 #include "base/array.h"
 #include "base/elementary.h"
@@ -393,6 +394,30 @@ static void hopper_check(const struct check *check, const struct job_body *body,
                 "does not ascend; the outlet's height and a greater one are expected");
 }
 
+static void axis_check(const struct check *check, const struct job_body *body, int i)
+{
+    char path[64];
+    PATH("bodies.%d.geometry.to", i);
+    if (!(vec3_norm(vec3_sub(body->to, body->from)) > 0.0))
+        mistake(check, path, "is where from is; another place is expected");
+}
+
+static void cone_check(const struct check *check, const struct job_body *body, int i)
+{
+    char path[64];
+    PATH("bodies.%d.geometry.radii", i);
+    if (!(body->radii[0] + body->radii[1] > 0.0))
+        mistake(check, path, "are both 0; at least one above 0 m is expected");
+}
+
+static void tube_check(const struct check *check, const struct job_body *body, int i)
+{
+    char path[64];
+    PATH("bodies.%d.geometry.outer", i);
+    if (!(body->inner < body->outer))
+        mistake(check, path, "is not above inner; a greater radius is expected");
+}
+
 static struct vec3 corner_product(const struct job_body *body, const int *facet, int a, int b,
                                   int c)
 {
@@ -574,7 +599,66 @@ static void gravity_check(const struct check *check)
     }
 }
 
-static void bodies_check(const struct check *check, bool *standing)
+/* Can the file of a body be opened?  What is in it is looked at when it is read. */
+static void surface_check(const struct check *check, const struct job_body *body, int i)
+{
+    char path[64];
+    struct stat about;
+    PATH("bodies.%d.geometry.file", i);
+    FILE *in = fopen(body->file, "rb");
+    if (in == NULL || fstat(fileno(in), &about) != 0)
+        mistake(check, path,
+                "is '%.200s', which cannot be read: %s; a file with a surface is "
+                "expected",
+                body->file, strerror(errno));
+    else if (S_ISDIR(about.st_mode))
+        mistake(check, path,
+                "is '%.200s', which is a folder; a file with a surface is expected",
+                body->file);
+    if (in != NULL)
+        fclose(in);
+}
+
+/* What the members of a shape ask of each other. */
+static void shape_check(const struct check *check, const struct job_body *body, int i,
+                        bool read_files)
+{
+    switch (body->geometry) {
+    case JOB_GEOMETRY_PLANE:
+        break;
+    case JOB_GEOMETRY_BOX:
+        box_check(check, body, i);
+        break;
+    case JOB_GEOMETRY_HOPPER:
+        hopper_check(check, body, i);
+        break;
+    case JOB_GEOMETRY_CONICAL_HOPPER:
+        hopper_check(check, body, i);
+        cone_check(check, body, i);
+        break;
+    case JOB_GEOMETRY_CONE:
+        axis_check(check, body, i);
+        cone_check(check, body, i);
+        break;
+    case JOB_GEOMETRY_CYLINDER:
+        axis_check(check, body, i);
+        break;
+    case JOB_GEOMETRY_TUBE:
+        axis_check(check, body, i);
+        tube_check(check, body, i);
+        break;
+    case JOB_GEOMETRY_MESH:
+        mesh_check(check, body, i);
+        break;
+    case JOB_GEOMETRY_STL:
+    case JOB_GEOMETRY_GMSH:
+        if (read_files)
+            surface_check(check, body, i);
+        break;
+    }
+}
+
+static void bodies_check(const struct check *check, bool read_files, bool *standing)
 {
     const struct job *job = check->job;
     int n_forced = 0;
@@ -585,12 +669,7 @@ static void bodies_check(const struct check *check, bool *standing)
         if (!is_clean(check, path) || !is_material(check, job->bodies[i].material))
             continue;
         standing[body->material] = true;
-        if (body->geometry == JOB_GEOMETRY_BOX)
-            box_check(check, body, i);
-        else if (body->geometry == JOB_GEOMETRY_HOPPER)
-            hopper_check(check, body, i);
-        else if (body->geometry == JOB_GEOMETRY_MESH)
-            mesh_check(check, body, i);
+        shape_check(check, body, i, read_files);
         motions_check(check, body, i);
         forced_check(check, body, i);
         PATH("bodies.%d.active", i);
@@ -722,7 +801,7 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     names_check(&check, "bodies", job->n_bodies, job->bodies, sizeof *job->bodies);
     names_check(&check, "sections", job->n_sections, job->sections, sizeof *job->sections);
     spheres_check(&check, read_files, falling);
-    bodies_check(&check, standing);
+    bodies_check(&check, read_files, standing);
     sections_check(&check);
     gravity_check(&check);
     domain_check(&check);

@@ -46,7 +46,10 @@ static const char *const region_kinds[] = {"box", "cylinder", "sphere", "inside"
 static const char *const sizes_kinds[] = {"list",      "uniform", "normal",
                                           "lognormal", "table",   NULL};
 static const char *const sizes_bys[] = {"number", "mass", NULL};
-static const char *const geometries[] = {"plane", "box", "hopper", "mesh", NULL};
+static const char *const geometries[] = {
+    "plane",          "box",  "hopper", "mesh", "cylinder", "cone",
+    "conical-hopper", "tube", "stl",    "gmsh", NULL};
+static const char *const caps[] = {"from", "to", NULL};
 static const char *const sides[] = {"x_min", "x_max", "y_min", "y_max", "bottom", "top", NULL};
 static const char *const section_kinds[] = {"plane", "disc", "rectangle", NULL};
 static const char *const splits[] = {"material", "size", NULL};
@@ -233,6 +236,22 @@ static const struct schema_key spheres_keys[] = {
      .inside = packing_keys},
     END};
 
+#define HOPPERS (KIND(JOB_GEOMETRY_HOPPER) | KIND(JOB_GEOMETRY_CONICAL_HOPPER))
+#define CONES   (KIND(JOB_GEOMETRY_CONE) | KIND(JOB_GEOMETRY_CONICAL_HOPPER))
+#define WITH_AXIS                                                                              \
+    (KIND(JOB_GEOMETRY_CYLINDER) | KIND(JOB_GEOMETRY_CONE) | KIND(JOB_GEOMETRY_TUBE))
+#define ROUND (WITH_AXIS | KIND(JOB_GEOMETRY_CONICAL_HOPPER))
+#define FILES (KIND(JOB_GEOMETRY_STL) | KIND(JOB_GEOMETRY_GMSH))
+
+static const struct schema_key rotate_keys[] = {
+    {"axis", SCHEMA_DIRECTION, "direction of the axis; the right hand's thumb",
+     .required = true, AT(struct job_body, turn_axis)},
+    {"angle", SCHEMA_NUMBER, "angle of the rotation", .unit = "rad", .required = true,
+     BETWEEN(-FAR, FAR), AT(struct job_body, turn_angle)},
+    {"point", SCHEMA_NUMBER, "a point of the axis", .unit = "m", .standard = ZERO,
+     BETWEEN(-FAR, FAR), AT(struct job_body, turn_point)},
+    END};
+
 static const struct schema_key geometry_keys[] = {
     {"kind", SCHEMA_CHOICE, "the shape", .required = true, .choices = geometries,
      AT(struct job_body, geometry)},
@@ -255,10 +274,43 @@ static const struct schema_key geometry_keys[] = {
      .required = true, ABOVE_TO(0.0, FAR), .kinds = KIND(JOB_GEOMETRY_HOPPER),
      AT(struct job_body, outlet)},
     {"z", SCHEMA_NUMBER, "heights of the outlet and of the upper opening", .unit = "m",
-     .required = true, BETWEEN(-FAR, FAR), .kinds = KIND(JOB_GEOMETRY_HOPPER),
-     AT(struct job_body, z)},
+     .required = true, BETWEEN(-FAR, FAR), .kinds = HOPPERS, AT(struct job_body, z)},
     {"centre", SCHEMA_NUMBER, "x and y of the hopper's axis", .unit = "m", .standard = "[0, 0]",
-     BETWEEN(-FAR, FAR), .kinds = KIND(JOB_GEOMETRY_HOPPER), AT(struct job_body, centre)},
+     BETWEEN(-FAR, FAR), .kinds = HOPPERS, AT(struct job_body, centre)},
+    {"from", SCHEMA_NUMBER, "one end of the axis", .unit = "m", .required = true,
+     BETWEEN(-FAR, FAR), .kinds = WITH_AXIS, AT(struct job_body, from)},
+    {"to", SCHEMA_NUMBER, "the other end", .unit = "m", .required = true, BETWEEN(-FAR, FAR),
+     .kinds = WITH_AXIS, AT(struct job_body, to)},
+    {"radius", SCHEMA_NUMBER, "radius of the cylinder", .unit = "m", .required = true,
+     ABOVE_TO(0.0, FAR), .kinds = KIND(JOB_GEOMETRY_CYLINDER), AT(struct job_body, radius)},
+    {"radii", SCHEMA_NUMBER,
+     "radii of the cone at `from` and `to`, one may be 0; of a hopper's outlet and upper "
+     "opening",
+     .unit = "m", .required = true, BETWEEN(0.0, FAR), .kinds = CONES,
+     AT(struct job_body, radii)},
+    {"inner", SCHEMA_NUMBER, "inner radius of the tube, whose wall is closed at its ends",
+     .unit = "m", .required = true, ABOVE_TO(0.0, FAR), .kinds = KIND(JOB_GEOMETRY_TUBE),
+     AT(struct job_body, inner)},
+    {"outer", SCHEMA_NUMBER, "outer radius of the tube", .unit = "m", .required = true,
+     ABOVE_TO(0.0, FAR), .kinds = KIND(JOB_GEOMETRY_TUBE), AT(struct job_body, outer)},
+    {"caps", SCHEMA_CHOICES, "ends that are closed", .standard = "[]", .choices = caps,
+     .kinds = KIND(JOB_GEOMETRY_CYLINDER) | KIND(JOB_GEOMETRY_CONE), AT(struct job_body, caps)},
+    {"segments", SCHEMA_INT,
+     "facets around the axis, 3 to 10000, corners on the circle: with N of them their middles "
+     "lie inside it by 4.9/N2 of the radius, 0.1 % at 72; `exact` is the curved surface itself",
+     .standard = "72", BETWEEN(3.0, 10000.0), .word = "exact", .word_value = 0.0,
+     .kinds = ROUND, AT(struct job_body, segments)},
+    {"file", SCHEMA_FILE,
+     "the file, relative to the job file: STL, ASCII or binary, or Gmsh's .msh, 2.2 or 4.1 in "
+     "ASCII",
+     .required = true, .kinds = FILES, AT(struct job_body, file)},
+    {"sum", SCHEMA_COUNT,
+     "checksum of the file (CRC-32), filled in by the program: a run is not resumed with "
+     "another file's surface",
+     .standard = "0", BETWEEN(0.0, 4294967295.0), .kinds = FILES, AT(struct job_body, sum)},
+    {"group", SCHEMA_TEXT, "the physical group that is taken; all surfaces when left out",
+     .kinds = KIND(JOB_GEOMETRY_GMSH), GIVEN(struct job_body, group),
+     AT(struct job_body, group)},
     {"vertices", SCHEMA_POINTS, "corners of the facets", .unit = "m", .required = true,
      BETWEEN(-FAR, FAR), .kinds = KIND(JOB_GEOMETRY_MESH),
      LIST_AT(struct job_body, vertices, n_vertices)},
@@ -266,6 +318,18 @@ static const struct schema_key geometry_keys[] = {
      "triangles and quads as vertex numbers from 0, counter-clockwise seen from outside",
      .required = true, BETWEEN(0.0, 2147483647.0), .kinds = KIND(JOB_GEOMETRY_MESH),
      LIST_AT(struct job_body, facets, n_facets)},
+    {"merge", SCHEMA_NUMBER,
+     "vertices nearer to each other than this become one, before the shape is scaled; those in "
+     "one place do so in any case",
+     .unit = "m", ABOVE_TO(0.0, FAR), .kinds = FILES | KIND(JOB_GEOMETRY_MESH),
+     GIVEN(struct job_body, merge), AT(struct job_body, merge)},
+    {"scale", SCHEMA_NUMBER, "factor on all coordinates, applied first: 0.001 for a file in mm",
+     .unit = "1", ABOVE_TO(0.0, 1e9), GIVEN(struct job_body, scale),
+     AT(struct job_body, scale)},
+    {"rotate", SCHEMA_GROUP, "a rotation, applied next", .inside = rotate_keys,
+     GIVEN(struct job_body, turn_axis)},
+    {"move", SCHEMA_NUMBER, "a shift, applied last", .unit = "m", BETWEEN(-FAR, FAR),
+     GIVEN(struct job_body, move), AT(struct job_body, move)},
     END};
 
 static const struct schema_key rotation_keys[] = {

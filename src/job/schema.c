@@ -192,7 +192,9 @@ const char *schema_expected(const struct schema_key *key, char text[SCHEMA_EXPEC
         return "a direction, a list of 3 numbers that are not all 0,";
     case SCHEMA_COUNT:
     case SCHEMA_INT:
-        if (key->type == SCHEMA_COUNT || single)
+        if (single && key->word != NULL)
+            snprintf(text, SCHEMA_EXPECTED, "a whole number%s, or %s,", bounds, key->word);
+        else if (key->type == SCHEMA_COUNT || single)
             snprintf(text, SCHEMA_EXPECTED, "a whole number%s", bounds);
         else
             snprintf(text, SCHEMA_EXPECTED, "a list of %zu whole numbers%s", n_components(key),

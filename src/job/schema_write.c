@@ -137,6 +137,10 @@ static void value_write(const struct page *page, const struct schema_key *key, c
         fprintf(out, "%lld", (long long)*(const int64_t *)place);
         break;
     case SCHEMA_INT:
+        if (key->word != NULL && *(const int *)place == (int)key->word_value) {
+            fputs(key->word, out);
+            break;
+        }
         integers_write(out, place, key->size / sizeof(int), NULL);
         break;
     case SCHEMA_REFERENCE:

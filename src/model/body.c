@@ -136,8 +136,6 @@ static void copy_motions(struct body *body, const struct job_body *asked)
 
 static void body_build(struct body *body, const struct job_body *asked, double end)
 {
-    struct geometry geometry;
-    geometry_build(&geometry, asked);
     *body = (struct body){.name = array_string(asked->name),
                           .material = asked->material,
                           .n_motions = asked->n_motions,
@@ -145,9 +143,7 @@ static void body_build(struct body *body, const struct job_body *asked, double e
                           .comes_and_goes = asked->comes_and_goes,
                           .active = {asked->active[0], asked->active[1]}};
     copy_motions(body, asked);
-    mesh_build(&body->mesh, geometry.n_vertices, geometry.vertices, geometry.n_facets,
-               (const int(*)[4])geometry.facets);
-    geometry_clear(&geometry);
+    geometry_build_mesh(&body->mesh, asked);
     if (asked->driven.given || asked->free.given) {
         body->rigid = array_allocate(1, sizeof *body->rigid);
         rigid_build(body->rigid, asked, &body->mesh);

@@ -1,8 +1,12 @@
 /*
- * Plane, box, hopper and mesh as facets: see geometry.h.
+ * Shapes as facets, or as bands about an axis: see geometry.h.
  *
- * Facets of a box and a hopper face outwards.  Corners that facets share have the same
- * coordinates to the last bit, so the mesh joins them.
+ * Facets of closed shapes face outwards.  Corners that facets share have the same coordinates
+ * to the last bit, so the mesh joins them.
+ *
+ * Round shapes are lines in the half-plane beside their axis, turned about it.  A disc is cut
+ * into strips, not into a fan: so no point of it has more than a few facets, whatever their
+ * number.
  */
 #include "model/geometry.h"
 
@@ -10,8 +14,14 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/elementary.h"
 #include "base/report.h"
 #include "job/job.h"
+#include "model/mesh.h"
+
+static const double PI = 3.14159265358979323846;
+/* Around the skin of a curved surface: 0.1 % of the radius. */
+enum { SKIN_SEGMENTS = 72 };
 
 static void reserve(struct geometry *geometry, int n_vertices, int n_facets)
 {
@@ -95,6 +105,190 @@ static void build_hopper(struct geometry *geometry, const struct job_body *body)
         add_quad(geometry, k, (k + 1) % 4, 4 + (k + 1) % 4, 4 + k);
 }
 
+/* ---- Round shapes
+ * ----------------------------------------------------------------------------- */
+
+static int add_point(struct geometry *geometry, double out, double up)
+{
+    geometry->points[geometry->n_points][0] = out;
+    geometry->points[geometry->n_points][1] = up;
+    return geometry->n_points++;
+}
+
+static void add_band(struct geometry *geometry, int from, int to)
+{
+    geometry->bands[geometry->n_bands][0] = from;
+    geometry->bands[geometry->n_bands++][1] = to;
+}
+
+/* Outwards along the first cap, up the side, inwards along the second. */
+static void profile_cone(struct geometry *geometry, double from, double to, double length,
+                         int caps)
+{
+    const int low = add_point(geometry, from, 0.0), high = add_point(geometry, to, length);
+    if ((caps & JOB_CAP_FROM) != 0 && from > 0.0)
+        add_band(geometry, add_point(geometry, 0.0, 0.0), low);
+    add_band(geometry, low, high);
+    if ((caps & JOB_CAP_TO) != 0 && to > 0.0)
+        add_band(geometry, high, add_point(geometry, 0.0, length));
+}
+
+static void profile_tube(struct geometry *geometry, double inner, double outer, double length)
+{
+    const double out[4] = {inner, outer, outer, inner}, up[4] = {0.0, 0.0, length, length};
+    for (int k = 0; k < 4; k++) {
+        add_point(geometry, out[k], up[k]);
+        add_band(geometry, k, (k + 1) % 4);
+    }
+}
+
+/* The first vertex of a point's circle; one on the axis has a single vertex. */
+static int circle_of(const struct geometry *geometry, int point, int n)
+{
+    int first = 0;
+    for (int p = 0; p < point; p++)
+        first += geometry->points[p][0] > 0.0 ? n : 1;
+    return first;
+}
+
+static void add_circles(struct geometry *geometry, int n)
+{
+    const struct vec3 u = geometry->direction;
+    const struct vec3 other =
+        u.x * u.x <= 0.5 ? (struct vec3){1.0, 0.0, 0.0} : (struct vec3){0.0, 1.0, 0.0};
+    const struct vec3 across = vec3_axpy(other, -vec3_dot(other, u), u);
+    const struct vec3 a = vec3_scale(1.0 / vec3_norm(across), across), b = vec3_cross(u, a);
+    for (int p = 0; p < geometry->n_points; p++) {
+        const double out = geometry->points[p][0];
+        const struct vec3 middle = vec3_axpy(geometry->origin, geometry->points[p][1], u);
+        for (int k = 0; k < (out > 0.0 ? n : 1); k++) {
+            const double angle = 2.0 * PI * (double)k / (double)n;
+            const struct vec3 arm =
+                vec3_axpy(vec3_scale(elementary_cos(angle), a), elementary_sin(angle), b);
+            geometry->vertices[geometry->n_vertices++] = vec3_axpy(middle, out, arm);
+        }
+    }
+}
+
+/* A circle's inside in strips; it faces along the axis, or against it. */
+static void add_disc(struct geometry *geometry, int first, int n, bool against)
+{
+    for (int k = 0; 2 * k + 2 <= n; k++) {
+        const int corners[4] = {k, k + 1, n - k - 1, k > 0 ? n - k : -1};
+        int c[4], m = 0;
+        for (int j = 0; j < 4; j++)
+            if (corners[j] >= 0 && (m == 0 || corners[j] != corners[j - 1]))
+                c[m++] = first + corners[j];
+        if (m < 3)
+            continue;
+        const int last = m == 4 ? c[3] : -1;
+        if (!against)
+            add_quad(geometry, c[0], c[1], c[2], last);
+        else if (m == 4)
+            add_quad(geometry, c[3], c[2], c[1], c[0]);
+        else
+            add_quad(geometry, c[2], c[1], c[0], -1);
+    }
+}
+
+/* What a line from point to point makes about the axis. */
+static void add_side(struct geometry *geometry, const int ends[2], int n)
+{
+    const double *from = geometry->points[ends[0]], *to = geometry->points[ends[1]];
+    const int p = circle_of(geometry, ends[0], n), q = circle_of(geometry, ends[1], n);
+    if (from[1] == to[1] && (from[0] == 0.0 || to[0] == 0.0)) {
+        add_disc(geometry, from[0] == 0.0 ? q : p, n, from[0] == 0.0);
+        return;
+    }
+    for (int k = 0; k < n; k++) {
+        const int next = (k + 1) % n;
+        if (from[0] == 0.0)
+            add_quad(geometry, p, q + next, q + k, -1);
+        else if (to[0] == 0.0)
+            add_quad(geometry, p + k, p + next, q, -1);
+        else
+            add_quad(geometry, p + k, p + next, q + next, q + k);
+    }
+}
+
+static void build_round(struct geometry *geometry, const struct job_body *body)
+{
+    const bool hopper = body->geometry == JOB_GEOMETRY_CONICAL_HOPPER;
+    const struct vec3 from =
+        hopper ? (struct vec3){body->centre[0], body->centre[1], body->z[0]} : body->from;
+    const struct vec3 to =
+        hopper ? (struct vec3){body->centre[0], body->centre[1], body->z[1]} : body->to;
+    const struct vec3 along = vec3_sub(to, from);
+    const double length = vec3_norm(along);
+    const int n = body->segments > 0 ? body->segments : SKIN_SEGMENTS;
+    geometry->origin = from;
+    geometry->direction = vec3_scale(1.0 / length, along);
+    if (body->geometry == JOB_GEOMETRY_TUBE)
+        profile_tube(geometry, body->inner, body->outer, length);
+    else if (body->geometry == JOB_GEOMETRY_CYLINDER)
+        profile_cone(geometry, body->radius, body->radius, length, body->caps);
+    else
+        profile_cone(geometry, body->radii[0], body->radii[1], length, body->caps);
+    reserve(geometry, geometry->n_points * n, geometry->n_bands * n);
+    add_circles(geometry, n);
+    for (int b = 0; b < geometry->n_bands; b++)
+        add_side(geometry, geometry->bands[b], n);
+    if (body->segments > 0)
+        geometry->n_bands = 0;
+}
+
+/* ---- Meshes
+ * ----------------------------------------------------------------------------------- */
+
+struct sweep { /* a vertex on its way past its neighbours */
+    double key;
+    int vertex;
+};
+
+static int compare_sweeps(const void *a, const void *b)
+{
+    const struct sweep *p = a, *q = b;
+    if (p->key != q->key)
+        return p->key < q->key ? -1 : 1;
+    return (p->vertex > q->vertex) - (p->vertex < q->vertex);
+}
+
+/* Gives facets the same vertex where several are nearer to it than the tolerance.  Vertices are
+ * swept along a direction in which hardly any two of a drawing lie level. */
+static void merge_vertices(struct geometry *geometry, double tolerance)
+{
+    static const struct vec3 sweeping = {0.5317, 0.3141, 0.7865};
+    const int n = geometry->n_vertices;
+    struct sweep *kept = array_allocate((size_t)n, sizeof *kept);
+    struct sweep *sweeps = array_allocate((size_t)n, sizeof *sweeps);
+    int *same = array_allocate((size_t)n, sizeof *same), n_kept = 0;
+    const double width = tolerance * vec3_norm(sweeping);
+    for (int v = 0; v < n; v++)
+        sweeps[v] = (struct sweep){vec3_dot(sweeping, geometry->vertices[v]), v};
+    qsort(sweeps, (size_t)n, sizeof *sweeps, compare_sweeps);
+    for (int k = 0; k < n; k++) {
+        const int v = sweeps[k].vertex;
+        same[v] = v;
+        for (int j = n_kept - 1; j >= 0 && sweeps[k].key - kept[j].key <= width; j--) {
+            const struct vec3 apart =
+                vec3_sub(geometry->vertices[v], geometry->vertices[kept[j].vertex]);
+            if (vec3_norm(apart) < tolerance) {
+                same[v] = kept[j].vertex;
+                break;
+            }
+        }
+        if (same[v] == v)
+            kept[n_kept++] = sweeps[k];
+    }
+    for (int f = 0; f < geometry->n_facets; f++)
+        for (int k = 0; k < 4; k++)
+            if (geometry->facets[f][k] >= 0)
+                geometry->facets[f][k] = same[geometry->facets[f][k]];
+    free(kept);
+    free(sweeps);
+    free(same);
+}
+
 static void build_mesh(struct geometry *geometry, const struct job_body *body)
 {
     reserve(geometry, body->n_vertices, body->n_facets);
@@ -104,11 +298,47 @@ static void build_mesh(struct geometry *geometry, const struct job_body *body)
         geometry->vertices[v] = body->vertices[v];
     for (int f = 0; f < body->n_facets; f++)
         memcpy(geometry->facets[f], body->facets[f], sizeof geometry->facets[f]);
+    if (body->merge > 0.0)
+        merge_vertices(geometry, body->merge);
 }
 
-void geometry_build(struct geometry *geometry, const struct job_body *body)
+/* ---- Any shape
+ * -------------------------------------------------------------------------------- */
+
+static struct vec3 turned(struct vec3 r, struct vec3 axis, double sine, double cosine)
 {
-    *geometry = (struct geometry){0, NULL, 0, NULL};
+    const struct vec3 along = vec3_scale(vec3_dot(axis, r) * (1.0 - cosine), axis);
+    const struct vec3 across = vec3_scale(sine, vec3_cross(axis, r));
+    return vec3_add(vec3_add(vec3_scale(cosine, r), across), along);
+}
+
+static void scale_shape(struct geometry *geometry, double scale)
+{
+    for (int v = 0; v < geometry->n_vertices; v++)
+        geometry->vertices[v] = vec3_scale(scale, geometry->vertices[v]);
+    geometry->origin = vec3_scale(scale, geometry->origin);
+    for (int p = 0; p < geometry->n_points; p++) {
+        geometry->points[p][0] = scale * geometry->points[p][0];
+        geometry->points[p][1] = scale * geometry->points[p][1];
+    }
+}
+
+static void turn_shape(struct geometry *geometry, const struct job_body *body)
+{
+    const double sine = elementary_sin(body->turn_angle);
+    const double cosine = elementary_cos(body->turn_angle);
+    for (int v = 0; v < geometry->n_vertices; v++) {
+        const struct vec3 arm = vec3_sub(geometry->vertices[v], body->turn_point);
+        geometry->vertices[v] =
+            vec3_add(body->turn_point, turned(arm, body->turn_axis, sine, cosine));
+    }
+    const struct vec3 arm = vec3_sub(geometry->origin, body->turn_point);
+    geometry->origin = vec3_add(body->turn_point, turned(arm, body->turn_axis, sine, cosine));
+    geometry->direction = turned(geometry->direction, body->turn_axis, sine, cosine);
+}
+
+static void build_shape(struct geometry *geometry, const struct job_body *body)
+{
     switch (body->geometry) {
     case JOB_GEOMETRY_PLANE:
         build_plane(geometry, body);
@@ -119,16 +349,53 @@ void geometry_build(struct geometry *geometry, const struct job_body *body)
     case JOB_GEOMETRY_HOPPER:
         build_hopper(geometry, body);
         return;
+    case JOB_GEOMETRY_CYLINDER:
+    case JOB_GEOMETRY_CONE:
+    case JOB_GEOMETRY_CONICAL_HOPPER:
+    case JOB_GEOMETRY_TUBE:
+        build_round(geometry, body);
+        return;
     case JOB_GEOMETRY_MESH:
+    case JOB_GEOMETRY_STL:
+    case JOB_GEOMETRY_GMSH:
         build_mesh(geometry, body);
         return;
     }
     CHECK(false, "unknown geometry %d", (int)body->geometry);
 }
 
+void geometry_build(struct geometry *geometry, const struct job_body *body)
+{
+    *geometry = (struct geometry){0};
+    build_shape(geometry, body);
+    if (body->scale > 0.0)
+        scale_shape(geometry, body->scale);
+    if (vec3_norm(body->turn_axis) > 0.0)
+        turn_shape(geometry, body);
+    if (vec3_norm(body->move) > 0.0) {
+        for (int v = 0; v < geometry->n_vertices; v++)
+            geometry->vertices[v] = vec3_add(geometry->vertices[v], body->move);
+        geometry->origin = vec3_add(geometry->origin, body->move);
+    }
+}
+
 void geometry_clear(struct geometry *geometry)
 {
     free(geometry->vertices);
     free(geometry->facets);
-    *geometry = (struct geometry){0, NULL, 0, NULL};
+    *geometry = (struct geometry){0};
+}
+
+void geometry_build_mesh(struct mesh *mesh, const struct job_body *body)
+{
+    struct geometry g;
+    geometry_build(&g, body);
+    const struct mesh_profile profile = {g.n_points, g.n_bands, (const double(*)[2])g.points,
+                                         (const int(*)[2])g.bands};
+    if (g.n_bands > 0)
+        mesh_build_round(mesh, &profile, g.origin, g.direction, g.n_vertices, g.vertices,
+                         g.n_facets, (const int(*)[4])g.facets);
+    else
+        mesh_build(mesh, g.n_vertices, g.vertices, g.n_facets, (const int(*)[4])g.facets);
+    geometry_clear(&g);
 }

@@ -1,5 +1,8 @@
 /* Closest points by feature: see contact_geometry.h.
  *
+ * A round surface is met in the half-plane through its axis and the centre, where bands are
+ * segments and rings are points.
+ *
  * Signed offsets from the border of a region are kept as products with the length of the edge
  * they belong to, and compared as squares: the common case needs neither root nor division. */
 #include "physics/contact_geometry.h"
@@ -124,6 +127,9 @@ static bool edge_touches(const struct mesh *mesh, int edge, struct vec3 centre, 
 static inline struct contact_geometry on_vertex(const struct mesh *mesh, int vertex,
                                                 struct vec3 centre)
 {
+    if (mesh->n_edges == 0) /* of a round surface: nothing touches it */
+        return (struct contact_geometry){mesh->place[vertex], mesh->direction,
+                                         vec3_norm(vec3_sub(centre, mesh->place[vertex]))};
     const int edge = mesh->edge_list[mesh->edge_begin[vertex]];
     return at_point(mesh, mesh->edges[edge].faces[0], mesh->place[vertex], centre);
 }
@@ -132,7 +138,7 @@ static bool vertex_touches(const struct mesh *mesh, int vertex, struct vec3 cent
                            double radius, struct contact_geometry *at)
 {
     const struct vec3 arm = vec3_sub(centre, mesh->place[vertex]);
-    if (!(vec3_dot(arm, arm) < radius * radius))
+    if (mesh->n_edges == 0 || !(vec3_dot(arm, arm) < radius * radius))
         return false;
     for (int k = mesh->edge_begin[vertex]; k < mesh->edge_begin[vertex + 1]; k++) {
         const int edge = mesh->edge_list[k];
@@ -146,6 +152,126 @@ static bool vertex_touches(const struct mesh *mesh, int vertex, struct vec3 cent
     return at->distance < radius;
 }
 
+/* ---- Bands and rings
+ * -------------------------------------------------------------------------- */
+
+/* A sphere nearer to the axis than this part of its overlap is held by the wall all around. */
+static const double AROUND = 0.1;
+
+/* The centre in the half-plane. */
+struct section {
+    double out, up;      /* from the axis, along it [m] */
+    struct vec3 outward; /* unit vector */
+};
+
+static inline struct section section_of(const struct mesh *mesh, struct vec3 centre)
+{
+    const struct vec3 arm = vec3_sub(centre, mesh->origin);
+    const double up = vec3_dot(arm, mesh->direction);
+    const struct vec3 across = vec3_axpy(arm, -up, mesh->direction);
+    const double out = vec3_norm(across);
+    return (struct section){out, up, out > 0.0 ? vec3_scale(1.0 / out, across) : mesh->aside};
+}
+
+/* How far along a band the centre's foot is, and how far off the band it is. */
+static inline double band_foot(const struct mesh *mesh, const struct mesh_band *band,
+                               const struct section *c, double *height)
+{
+    const struct mesh_ring *from = &mesh->rings[band->rings[0]];
+    const double out = c->out - from->radius, up = c->up - from->height;
+    *height = out * band->along[1] - up * band->along[0];
+    return out * band->along[0] + up * band->along[1];
+}
+
+static inline struct contact_geometry in_section(const struct mesh *mesh, struct vec3 centre,
+                                                 const struct section *c, double normal_out,
+                                                 double normal_up, double distance)
+{
+    struct contact_geometry at;
+    at.normal = vec3_axpy(vec3_scale(normal_out, c->outward), normal_up, mesh->direction);
+    at.point = vec3_axpy(centre, -distance, at.normal);
+    at.distance = distance;
+    return at;
+}
+
+static inline struct contact_geometry on_band(const struct mesh *mesh, int b,
+                                              struct vec3 centre, const struct section *c)
+{
+    const struct mesh_band *band = &mesh->bands[b];
+    double height;
+    band_foot(mesh, band, c, &height);
+    const double side = height < 0.0 ? -1.0 : 1.0;
+    return in_section(mesh, centre, c, side * band->along[1], -side * band->along[0],
+                      side * height);
+}
+
+static inline struct contact_geometry on_ring(const struct mesh *mesh, int r,
+                                              struct vec3 centre, const struct section *c)
+{
+    const struct mesh_ring *ring = &mesh->rings[r];
+    const double out = c->out - ring->radius, up = c->up - ring->height;
+    const double distance = sqrt(out * out + up * up);
+    if (!(distance > 0.0))
+        return on_band(mesh, ring->bands[0], centre, c);
+    return in_section(mesh, centre, c, out / distance, up / distance, distance);
+}
+
+/* Near the axis the wall is about as near on all sides: there the normal turns to the axis
+ * (THEORY.md 2.2). */
+static void turn_to_axis(const struct mesh *mesh, struct vec3 centre, const struct section *c,
+                         double radius, struct contact_geometry *at)
+{
+    const double width = AROUND * (radius - at->distance);
+    if (!(c->out < width))
+        return;
+    const double out = vec3_dot(at->normal, c->outward),
+                 up = vec3_dot(at->normal, mesh->direction);
+    if (!(out < 0.0) || !(up * up > AROUND * AROUND * out * out))
+        return;
+    const double less = out * c->out / width;
+    const double scale = 1.0 / sqrt(less * less + up * up);
+    *at = in_section(mesh, centre, c, scale * less, scale * up, at->distance);
+}
+
+static bool band_touches(const struct mesh *mesh, int b, struct vec3 centre, double radius,
+                         struct contact_geometry *at)
+{
+    const struct section c = section_of(mesh, centre);
+    const double hair = SEAM * radius;
+    double height;
+    const double foot = band_foot(mesh, &mesh->bands[b], &c, &height);
+    if (!(height < radius && height > -radius && foot >= -hair &&
+          foot <= mesh->bands[b].length + hair))
+        return false;
+    *at = on_band(mesh, b, centre, &c);
+    turn_to_axis(mesh, centre, &c, radius, at);
+    return true;
+}
+
+static bool ring_touches(const struct mesh *mesh, int r, struct vec3 centre, double radius,
+                         struct contact_geometry *at)
+{
+    const struct mesh_ring *ring = &mesh->rings[r];
+    const struct section c = section_of(mesh, centre);
+    const struct contact_geometry closest = on_ring(mesh, r, centre, &c);
+    if (!(closest.distance < radius))
+        return false;
+    for (int k = 0; k < 2 && ring->bands[k] >= 0; k++) {
+        const struct mesh_band *band = &mesh->bands[ring->bands[k]];
+        double height;
+        const double foot = band_foot(mesh, band, &c, &height);
+        const double inside = band->rings[0] == r ? foot : band->length - foot;
+        if (inside > SEAM * radius)
+            return false;
+    }
+    *at = closest;
+    turn_to_axis(mesh, centre, &c, radius, at);
+    return true;
+}
+
+/* ---- Any feature
+ * ------------------------------------------------------------------------------ */
+
 bool contact_geometry_touches(const struct mesh *mesh, int feature, struct vec3 centre,
                               double radius, struct contact_geometry *at)
 {
@@ -154,7 +280,13 @@ bool contact_geometry_touches(const struct mesh *mesh, int feature, struct vec3 
     const int edge = feature - mesh->n_faces;
     if (edge < mesh->n_edges)
         return edge_touches(mesh, edge, centre, radius, at);
-    return vertex_touches(mesh, edge - mesh->n_edges, centre, radius, at);
+    const int vertex = edge - mesh->n_edges;
+    if (vertex < mesh->n_vertices)
+        return vertex_touches(mesh, vertex, centre, radius, at);
+    const int band = vertex - mesh->n_vertices;
+    if (band < mesh->n_bands)
+        return band_touches(mesh, band, centre, radius, at);
+    return ring_touches(mesh, band - mesh->n_bands, centre, radius, at);
 }
 
 struct contact_geometry contact_geometry_closest(const struct mesh *mesh, int feature,
@@ -167,7 +299,12 @@ struct contact_geometry contact_geometry_closest(const struct mesh *mesh, int fe
         const struct segment s = edge_segment(mesh, edge, centre);
         return on_edge(mesh, edge, &s, centre);
     }
-    return on_vertex(mesh, edge - mesh->n_edges, centre);
+    const int vertex = edge - mesh->n_edges, band = vertex - mesh->n_vertices;
+    if (vertex < mesh->n_vertices)
+        return on_vertex(mesh, vertex, centre);
+    const struct section c = section_of(mesh, centre);
+    return band < mesh->n_bands ? on_band(mesh, band, centre, &c)
+                                : on_ring(mesh, band - mesh->n_bands, centre, &c);
 }
 
 /* ---- Shares of nodes
@@ -302,6 +439,27 @@ static bool edge_reaches(const struct mesh *mesh, int edge, struct vec3 centre, 
     return !(on_edge(mesh, edge, &s, centre).distance > reach);
 }
 
+/* The skin's corners, by which the speed of a body is known, lag behind its rim by less than
+ * this part. */
+static const double SKIN = 1.01;
+
+/* The distance to a segment of the half-plane. */
+static bool band_reaches(const struct mesh *mesh, int b, struct vec3 centre, double reach)
+{
+    const struct mesh_band *band = &mesh->bands[b];
+    const struct section c = section_of(mesh, centre);
+    double height;
+    const double foot = band_foot(mesh, band, &c, &height), wide = SKIN * reach;
+    const double beyond = foot < 0.0 ? -foot : foot > band->length ? foot - band->length : 0.0;
+    return !(height * height + beyond * beyond > wide * wide);
+}
+
+static bool ring_reaches(const struct mesh *mesh, int r, struct vec3 centre, double reach)
+{
+    const struct section c = section_of(mesh, centre);
+    return !(on_ring(mesh, r, centre, &c).distance > SKIN * reach);
+}
+
 bool contact_geometry_reaches(const struct mesh *mesh, int feature, struct vec3 centre,
                               double reach)
 {
@@ -310,8 +468,13 @@ bool contact_geometry_reaches(const struct mesh *mesh, int feature, struct vec3 
     const int edge = feature - mesh->n_faces;
     if (edge < mesh->n_edges)
         return edge_reaches(mesh, edge, centre, reach);
-    const struct vec3 arm = vec3_sub(centre, mesh->place[edge - mesh->n_edges]);
-    return !(vec3_dot(arm, arm) > reach * reach);
+    const int vertex = edge - mesh->n_edges, band = vertex - mesh->n_vertices;
+    if (vertex < mesh->n_vertices) {
+        const struct vec3 arm = vec3_sub(centre, mesh->place[vertex]);
+        return !(vec3_dot(arm, arm) > reach * reach);
+    }
+    return band < mesh->n_bands ? band_reaches(mesh, band, centre, reach)
+                                : ring_reaches(mesh, band - mesh->n_bands, centre, reach);
 }
 
 bool contact_geometry_reaches_side(const struct mesh *mesh, int face, int side,

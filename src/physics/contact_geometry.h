@@ -1,5 +1,5 @@
 /*
- * Where a sphere meets a feature (face, edge, vertex) of a surface.
+ * Where a sphere meets a feature (face, edge, vertex; band, ring) of a surface.
  *
  * A sphere touches a surface where the distance to its centre is least *locally*: a minimum
  * inside a face, on an edge, at a vertex. Each place belongs to one feature. A face holds what
@@ -11,6 +11,11 @@
  * (1e-7 of the radius) beyond its borders. So rounding leaves no gap at a seam, where a sphere
  * would fall through for a step; at the price that two features may hold the same place, where
  * who asks must drop one (contact/facet_contact.c).
+ *
+ * A round surface is the same thing in the half-plane through its axis and the sphere's centre:
+ * bands hold what projects into them, rings what lies beyond the ends of their bands. Where the
+ * centre is on the axis and the wall around it, the nearest point is a whole circle; there the
+ * normal is along the axis.
  *
  * Surfaces have two sides: the normal points to whichever side the centre is on.
  */
@@ -44,8 +49,9 @@ struct contact_geometry_shares {
     double parts[4]; /* their sum is 1; negative only where the point is outside by rounding */
 };
 
-/* Triangles by area, quads as four triangles about their mean point, warped or flat; edges and
- * vertices alike. A point that is off a face counts as its foot on the face's plane. */
+/* Of faces, edges and vertices: triangles by area, quads as four triangles about their mean
+ * point, warped or flat; edges and vertices alike. A point that is off a face counts as its
+ * foot on the face's plane. */
 struct contact_geometry_shares contact_geometry_shares(const struct mesh *mesh, int feature,
                                                        struct vec3 point);
 

@@ -16,8 +16,10 @@
 #include "run/limits.h"
 #include "run/simulation.h"
 #include "run/step.h"
+#include "run/survey.h"
 #include "store/crc32.h"
 #include "store/file.h"
+#include "store/surface_file.h"
 
 enum { ALL_PAIRS_MOST = 20000 }; /* 2e8 pairs */
 
@@ -143,8 +145,8 @@ static void choose_times(struct job *job, double speed)
     }
 }
 
-/* A packing says "file:line:column: what"; the place goes where places go. */
-static void add_csv_mistake(struct mistakes *mistakes, const char *file, const char *why)
+/* A packing or a surface says "file:line:column: what"; the place goes where places go. */
+static void add_file_mistake(struct mistakes *mistakes, const char *file, const char *why)
 {
     int line = 0, column = 0, begin = 0;
     const char *rest = why + strlen(file);
@@ -166,6 +168,17 @@ static int64_t checksum(const char *path)
     return sum;
 }
 
+static void read_surfaces(struct job *job, struct mistakes *mistakes)
+{
+    for (int b = 0; b < job->n_bodies; b++) {
+        struct job_body *body = &job->bodies[b];
+        char *why = surface_file_has(body) ? surface_file_read(body) : NULL;
+        if (why != NULL)
+            add_file_mistake(mistakes, body->file, why);
+        free(why);
+    }
+}
+
 bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
 {
     struct extent scene = extent_nothing();
@@ -176,7 +189,7 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
         struct packing packing;
         char *why = NULL;
         if (!packing_open(&packing, job, g, &why)) {
-            add_csv_mistake(mistakes, job->spheres[g].file, why);
+            add_file_mistake(mistakes, job->spheres[g].file, why);
             free(why);
             continue;
         }
@@ -202,16 +215,18 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
             "decomposition.grid is %d x %d x %d on %d ranks; a product equal to the ranks is "
             "expected",
             grid[0], grid[1], grid[2], n_ranks);
+    read_surfaces(job, mistakes);
     if (mistakes->n > 0)
         return false;
     struct bodies bodies;
     bodies_build(&bodies, job);
+    survey_check(job, &bodies, mistakes);
     add_bodies(&bodies, &scene);
     choose_domain(job, &scene);
     if (job->time.step == 0.0)
         choose_times(job, foresee_speed(job, &bodies, speed));
     bodies_clear(&bodies);
-    return true;
+    return mistakes->n == 0;
 }
 
 /* ------------------------------------------------------------------------------- tremie
@@ -325,21 +340,6 @@ static int64_t print_groups(const struct job *job, const struct bodies *bodies,
     return n;
 }
 
-static void print_bodies(const struct job *job, const struct bodies *bodies)
-{
-    for (int b = 0; b < bodies->n; b++) {
-        struct extent extent = extent_nothing();
-        const struct body *body = &bodies->list[b];
-        for (int v = 0; v < body->mesh.n_vertices; v++)
-            extent_add(&extent, body->mesh.reference[v], 0.0);
-        report_say("body      %s: rigid, %s, %d facet%s%s", body->name,
-                   job->materials[body->material].name, body->mesh.n_faces,
-                   body->mesh.n_faces == 1 ? "" : "s",
-                   body->moves ? ", moves as prescribed" : "");
-        print_extent("         ", &extent);
-    }
-}
-
 /* The forces of the start, as the run would find them.  Collective. */
 static void print_start(const struct job *job, const struct comm *comm)
 {
@@ -347,6 +347,7 @@ static void print_start(const struct job *job, const struct comm *comm)
     char what[160];
     simulation_create(&sim, comm, job, PAIR_KERNEL_AUTO);
     step_forces(&sim);
+    survey_warn(job, &sim.bodies, &sim.spheres, comm);
     const double deepest = watch_deepest(&sim, what, sizeof what);
     const double critical = watch_critical_step(&sim);
     double rounding = sim.watch.rounding;
@@ -380,7 +381,7 @@ void check_print(const struct job *job, const struct comm *comm)
                job->time.step);
     bodies_build(&bodies, job);
     const int64_t n = print_groups(job, &bodies, &scene);
-    print_bodies(job, &bodies);
+    survey_print(job, &bodies);
     add_bodies(&bodies, &scene);
     bodies_clear(&bodies);
     print_extent("scene    ", &scene);

@@ -19,6 +19,7 @@
 #include "run/options.h"
 #include "run/simulation.h"
 #include "run/step.h"
+#include "run/survey.h"
 #include "store/checkpoint.h"
 #include "store/run_folder.h"
 
@@ -198,6 +199,7 @@ static int prepare(struct drive *drive)
     if (!found)
         simulation_create(&drive->sim, drive->comm, drive->job, drive->options->isa);
     describe_run(drive);
+    survey_warn(drive->job, &drive->sim.bodies, &drive->sim.spheres, drive->comm);
     if (found)
         report_say("resumes at step %lld (%.6g s)", (long long)drive->sim.step,
                    (double)drive->sim.step * drive->sim.dt);

@@ -20,6 +20,7 @@
 #include "run/control.h"
 #include "run/drive.h"
 #include "run/options.h"
+#include "store/surface_file.h"
 
 static const char USAGE[] =
     "usage: tremie COMMAND ...\n"
@@ -66,6 +67,8 @@ static int read_job(const struct comm *comm, const struct options *options, stru
     } else if (size > 0) {
         comm_broadcast(comm, *text, (size_t)size);
     }
+    if (size > 0)
+        surface_file_share(job, comm);
     mistakes_clear(&mistakes);
     return size > 0 ? REPORT_FINISHED : REPORT_BAD_INPUT;
 }

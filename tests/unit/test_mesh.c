@@ -107,12 +107,13 @@ TEST(facets_without_area_and_unused_vertices_are_left_out)
         {1, 2, 3, -1}, /* the only real one */
         {1, 2, 4, -1}, /* on a line */
         {1, 5, 2, -1}, /* two vertices in one place */
-        {1, 2, 3, 5},  /* a triangle written as a quad */
+        {1, 2, 3, 5},  /* that triangle again, written as a quad */
     };
     struct mesh mesh;
     mesh_build(&mesh, 6, vertices, 4, facets);
-    EXPECT(mesh.n_faces == 2 && mesh.n_vertices == 3);
-    EXPECT(mesh.faces[1].n == 3);
+    EXPECT(mesh.n_faces == 1 && mesh.n_vertices == 3);
+    EXPECT(mesh.n_degenerate == 2 && mesh.first_degenerate == 1);
+    EXPECT(mesh.n_duplicates == 1 && mesh.first_duplicate == 3);
     EXPECT(is_consistent(&mesh));
     mesh_clear(&mesh);
 }
@@ -125,8 +126,39 @@ TEST(an_edge_with_three_faces_keeps_the_first_two)
     mesh_build(&mesh, 5, vertices, 3, facets);
     EXPECT(mesh.n_edges == 7);
     const struct mesh_edge *edge = &mesh.edges[mesh.faces[2].edges[0]];
-    EXPECT(edge->faces[0] == 0 && edge->faces[1] == 1);
+    EXPECT(edge->faces[0] == 0 && edge->faces[1] == 1 && edge->n_faces == 3);
     EXPECT(is_consistent(&mesh));
+    mesh_clear(&mesh);
+}
+
+TEST(a_survey_tells_a_closed_surface_from_one_with_a_hole)
+{
+    struct mesh mesh;
+    mesh_build(&mesh, 8, CUBE, 6, CUBE_FACETS);
+    struct mesh_survey survey = mesh_survey(&mesh);
+    EXPECT(survey.closed && survey.n_open == 0 && survey.n_shared == 0 && survey.n_turned == 0);
+    EXPECT_NEAR(survey.area, 6.0, 1e-15);
+    EXPECT_NEAR(survey.volume, 1.0, 1e-15);
+    EXPECT(survey.low.x == 0.0 && survey.high.z == 1.0);
+    mesh_clear(&mesh);
+    mesh_build(&mesh, 8, CUBE, 5, CUBE_FACETS);
+    survey = mesh_survey(&mesh);
+    EXPECT(!survey.closed && survey.n_open == 4 && survey.volume == 0.0);
+    EXPECT(mesh.edges[survey.first_open].n_faces == 1);
+    mesh_clear(&mesh);
+}
+
+TEST(a_survey_finds_facets_that_look_the_other_way_and_walls_that_meet_in_a_tee)
+{
+    const struct vec3 vertices[5] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}};
+    const int facets[3][4] = {{0, 1, 2, -1}, {0, 1, 3, -1}, {0, 1, 4, -1}};
+    struct mesh mesh;
+    mesh_build(&mesh, 5, vertices, 3, facets);
+    EXPECT(mesh_survey(&mesh).n_shared == 1 && !mesh_survey(&mesh).closed);
+    mesh_clear(&mesh);
+    mesh_build(&mesh, 5, vertices, 2, facets);
+    EXPECT(mesh_survey(&mesh).n_turned == 1);
+    EXPECT(mesh_survey(&mesh).first_turned == mesh.faces[0].edges[0]);
     mesh_clear(&mesh);
 }
 

@@ -1,0 +1,461 @@
+/*
+ * A file is a sequence of sections, $Name to $EndName, of which four matter: the format, the
+ * names of physical groups, the nodes, the elements; and in 4.1 the entities, which say what
+ * groups a surface belongs to (in 2.2 each element does).  Nodes have numbers of any size; they
+ * are found by bisection.  Counts are believed only as far as the file is long.
+ *
+ * Format: https://gmsh.info/doc/texinfo/gmsh.html#File-formats, chapters "MSH file format" and
+ * "MSH file format version 2 (Legacy)".
+ */
+#include "model/gmsh.h"
+
+#include <stdint.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/scan.h"
+
+enum { TRIANGLE = 2, QUAD = 3, SURFACE = 2, NAME_SHOWN = 300 };
+
+struct node {
+    int64_t tag;
+    struct vec3 place;
+};
+
+struct reader {
+    struct scan scan;
+    struct surface *surface;
+    const char *group;       /* NULL: all */
+    int version;             /* 22 or 41; 0: not said yet */
+    int64_t physical;        /* of the group; 0: not found */
+    char others[NAME_SHOWN]; /* the groups that there are */
+    int n_nodes, node_capacity;
+    struct node *nodes;
+    bool nodes_ascend;
+    int n_chosen, chosen_capacity; /* 4.1: surfaces in the group */
+    int64_t *chosen;
+    int64_t n_surface_elements; /* of any group */
+};
+
+static const char COUNT[] = "a count that fits the file";
+static const char TAG[] = "a whole number above 0";
+
+static bool read_count(struct reader *reader, int64_t *count)
+{
+    /* Whatever is counted takes two bytes at least. */
+    const int64_t most = (reader->scan.end - reader->scan.at) / 2;
+    return scan_whole(&reader->scan, 0, most, count, COUNT);
+}
+
+static bool read_any(struct reader *reader, int64_t *value)
+{
+    return scan_whole(&reader->scan, INT64_MIN, INT64_MAX, value, "a whole number");
+}
+
+static bool read_numbers(struct reader *reader, int64_t n, double *values, int keep)
+{
+    double value;
+    for (int64_t k = 0; k < n; k++) {
+        if (!scan_number(&reader->scan, &value, "a finite number"))
+            return false;
+        if (k < keep)
+            values[k] = value;
+    }
+    return true;
+}
+
+/* ---- Head
+ * ------------------------------------------------------------------------------------- */
+
+static bool read_format(struct reader *reader)
+{
+    struct scan *scan = &reader->scan;
+    if (!scan_word(scan))
+        return scan_refuse(scan, "the version of the format");
+    if (scan_is(scan, "2.2") || scan_is(scan, "2.1") || scan_is(scan, "2"))
+        reader->version = 22;
+    else if (scan_is(scan, "4.1"))
+        reader->version = 41;
+    else
+        return scan_refuse(scan, "version 2.2 or 4.1 (gmsh -format msh41)");
+    if (!scan_word(scan))
+        return scan_refuse(scan, "0 for an ASCII file");
+    if (!scan_is(scan, "0"))
+        return scan_complain(scan, "this is a binary .msh file; an ASCII one (gmsh -bin 0, "
+                                   "Mesh.Binary = 0) is expected");
+    scan_skip_line(scan);
+    return true;
+}
+
+static void list_group(struct reader *reader, const char *name, size_t length)
+{
+    const size_t used = strlen(reader->others);
+    if (used + length + 3 < sizeof reader->others) {
+        memcpy(reader->others + used, used > 0 ? ", " : "", used > 0 ? 3 : 1);
+        strncat(reader->others, name, length);
+    }
+}
+
+static bool read_names(struct reader *reader)
+{
+    struct scan *scan = &reader->scan;
+    int64_t n, dimension, tag;
+    if (!read_count(reader, &n))
+        return false;
+    for (int64_t k = 0; k < n; k++) {
+        if (!read_any(reader, &dimension) || !read_any(reader, &tag))
+            return false;
+        if (!scan_word_of_line(scan) || scan->word[0] != '"')
+            return scan_refuse(scan, "the group's name in quotes");
+        const char *name = scan->word + 1;
+        scan_skip_line(scan);
+        const char *quote = name;
+        while (quote < scan->at && *quote != '"')
+            quote++;
+        const size_t length = (size_t)(quote - name);
+        if (dimension != SURFACE)
+            continue;
+        list_group(reader, name, length);
+        if (reader->group != NULL && strlen(reader->group) == length &&
+            memcmp(reader->group, name, length) == 0)
+            reader->physical = tag;
+    }
+    return true;
+}
+
+/* ---- Entities, 4.1
+ * ---------------------------------------------------------------------------- */
+
+/* A surface's tag, box, physical groups and borders; it is chosen where it is in the group. */
+static bool read_surface_entity(struct reader *reader)
+{
+    int64_t tag, n, value;
+    bool chosen = false;
+    if (!read_any(reader, &tag) || !read_numbers(reader, 6, NULL, 0) || !read_count(reader, &n))
+        return false;
+    for (int64_t k = 0; k < n; k++) {
+        if (!read_any(reader, &value))
+            return false;
+        chosen = chosen || value == reader->physical || value == -reader->physical;
+    }
+    scan_skip_line(&reader->scan);
+    if (chosen && reader->physical != 0) {
+        ARRAY_GROW(reader->chosen, reader->n_chosen + 1, reader->chosen_capacity);
+        reader->chosen[reader->n_chosen++] = tag;
+    }
+    return true;
+}
+
+static bool read_entities(struct reader *reader)
+{
+    int64_t n[4];
+    for (int d = 0; d < 4; d++)
+        if (!read_count(reader, &n[d]))
+            return false;
+    scan_skip_line(&reader->scan);
+    for (int d = 0; d < SURFACE; d++)
+        for (int64_t k = 0; k < n[d]; k++) { /* a line each */
+            if (!scan_word(&reader->scan))
+                return scan_refuse(&reader->scan, "an entity");
+            scan_skip_line(&reader->scan);
+        }
+    for (int64_t k = 0; k < n[SURFACE]; k++)
+        if (!read_surface_entity(reader))
+            return false;
+    return true;
+}
+
+/* ---- Nodes
+ * ------------------------------------------------------------------------------------ */
+
+static int compare_nodes(const void *a, const void *b)
+{
+    const struct node *p = a, *q = b;
+    return (p->tag > q->tag) - (p->tag < q->tag);
+}
+
+static void add_node(struct reader *reader, int64_t tag)
+{
+    ARRAY_GROW(reader->nodes, reader->n_nodes + 1, reader->node_capacity);
+    if (reader->n_nodes > 0 && tag <= reader->nodes[reader->n_nodes - 1].tag)
+        reader->nodes_ascend = false;
+    reader->nodes[reader->n_nodes++] = (struct node){.tag = tag};
+}
+
+static bool read_place(struct reader *reader, struct node *node, int64_t n_numbers)
+{
+    double x[3];
+    if (!read_numbers(reader, n_numbers, x, 3))
+        return false;
+    node->place = (struct vec3){x[0], x[1], x[2]};
+    return true;
+}
+
+static bool read_nodes_22(struct reader *reader)
+{
+    int64_t n, tag;
+    if (!read_count(reader, &n))
+        return false;
+    for (int64_t k = 0; k < n; k++) {
+        if (!scan_whole(&reader->scan, 1, INT64_MAX, &tag, TAG))
+            return false;
+        add_node(reader, tag);
+        if (!read_place(reader, &reader->nodes[reader->n_nodes - 1], 3))
+            return false;
+    }
+    return true;
+}
+
+/* A block: the numbers of its nodes, then their places. */
+static bool read_node_block(struct reader *reader)
+{
+    struct scan *scan = &reader->scan;
+    int64_t dimension, entity, parametric, n, tag;
+    if (!scan_whole(scan, 0, 3, &dimension, "a dimension, 0 to 3,") ||
+        !read_any(reader, &entity) || !scan_whole(scan, 0, 1, &parametric, "0 or 1") ||
+        !read_count(reader, &n))
+        return false;
+    const int first = reader->n_nodes;
+    for (int64_t k = 0; k < n; k++) {
+        if (!scan_whole(scan, 1, INT64_MAX, &tag, TAG))
+            return false;
+        add_node(reader, tag);
+    }
+    for (int k = first; k < reader->n_nodes; k++)
+        if (!read_place(reader, &reader->nodes[k], 3 + (parametric != 0 ? dimension : 0)))
+            return false;
+    return true;
+}
+
+static bool read_nodes_41(struct reader *reader)
+{
+    int64_t n_blocks, value;
+    if (!read_count(reader, &n_blocks))
+        return false;
+    for (int k = 0; k < 3; k++) /* how many nodes, least and largest number */
+        if (!read_any(reader, &value))
+            return false;
+    for (int64_t b = 0; b < n_blocks; b++)
+        if (!read_node_block(reader))
+            return false;
+    return true;
+}
+
+static bool read_nodes(struct reader *reader)
+{
+    if (reader->n_nodes > 0)
+        return scan_complain(&reader->scan, "nodes a second time; one section is expected");
+    const bool fine = reader->version == 22 ? read_nodes_22(reader) : read_nodes_41(reader);
+    if (fine && !reader->nodes_ascend)
+        qsort(reader->nodes, (size_t)reader->n_nodes, sizeof *reader->nodes, compare_nodes);
+    return fine;
+}
+
+/* ---- Elements
+ * --------------------------------------------------------------------------------- */
+
+/* Corners of the elements that are taken; 0: left aside; -1: refused. */
+static int corners_of(int64_t type)
+{
+    static const char second_order[] = {9, 10, 16, 20, 21, 22, 23, 24, 25};
+    if (type == TRIANGLE || type == QUAD)
+        return type == TRIANGLE ? 3 : 4;
+    for (size_t k = 0; k < sizeof second_order; k++)
+        if (type == second_order[k])
+            return -1;
+    return 0;
+}
+
+static bool refuse_order(struct reader *reader, int64_t type)
+{
+    return scan_complain(
+        &reader->scan,
+        "elements of type %lld, which are curved; triangles and quads of first "
+        "order (gmsh -order 1) are expected",
+        (long long)type);
+}
+
+/* The corners of an element that is in the group. */
+static bool read_corners(struct reader *reader, int n)
+{
+    int corners[4] = {-1, -1, -1, -1};
+    if (reader->surface->n_facets == SURFACE_FACETS_MOST)
+        return scan_complain(&reader->scan, "more than %d facets; fewer are expected",
+                             SURFACE_FACETS_MOST);
+    for (int k = 0; k < n; k++) {
+        struct node wanted = {0};
+        if (!scan_whole(&reader->scan, 1, INT64_MAX, &wanted.tag, TAG))
+            return false;
+        const struct node *node = reader->n_nodes > 0
+                                      ? bsearch(&wanted, reader->nodes, (size_t)reader->n_nodes,
+                                                sizeof *reader->nodes, compare_nodes)
+                                      : NULL;
+        if (node == NULL)
+            return scan_complain(&reader->scan,
+                                 "there is no node %lld; one of the section $Nodes before it "
+                                 "is expected",
+                                 (long long)wanted.tag);
+        corners[k] = (int)(node - reader->nodes);
+    }
+    surface_add_facet(reader->surface, corners[0], corners[1], corners[2], corners[3]);
+    return true;
+}
+
+/* number type tags... corners */
+static bool read_element_22(struct reader *reader)
+{
+    struct scan *scan = &reader->scan;
+    int64_t number, type, n_tags, tag, physical = 0;
+    if (!read_any(reader, &number) ||
+        !scan_whole(scan, 1, 1000, &type, "the type of an element") ||
+        !scan_whole(scan, 0, 100000, &n_tags, "the number of the element's tags"))
+        return false;
+    for (int64_t k = 0; k < n_tags; k++) {
+        if (!read_any(reader, &tag))
+            return false;
+        physical = k == 0 ? tag : physical;
+    }
+    if (physical < 0 && physical > -INT64_MAX) /* looks the other way: no matter */
+        physical = -physical;
+    const int n = corners_of(type);
+    if (n < 0)
+        return refuse_order(reader, type);
+    reader->n_surface_elements += n > 0;
+    if (n == 0 || (reader->group != NULL && physical != reader->physical)) {
+        scan_skip_line(scan);
+        return true;
+    }
+    return read_corners(reader, n);
+}
+
+static bool is_chosen(const struct reader *reader, int64_t entity)
+{
+    for (int k = 0; k < reader->n_chosen; k++)
+        if (reader->chosen[k] == entity)
+            return true;
+    return reader->group == NULL;
+}
+
+/* number corners..., a line each */
+static bool read_element_block(struct reader *reader)
+{
+    struct scan *scan = &reader->scan;
+    int64_t dimension, entity, type, n_elements, number;
+    if (!scan_whole(scan, 0, 3, &dimension, "a dimension, 0 to 3,") ||
+        !read_any(reader, &entity) ||
+        !scan_whole(scan, 1, 1000, &type, "the type of an element") ||
+        !read_count(reader, &n_elements))
+        return false;
+    const int n = corners_of(type);
+    if (n < 0)
+        return refuse_order(reader, type);
+    const bool taken = n > 0 && is_chosen(reader, entity);
+    reader->n_surface_elements += n > 0 ? n_elements : 0;
+    for (int64_t k = 0; k < n_elements; k++) {
+        if (!read_any(reader, &number))
+            return false;
+        if (!taken)
+            scan_skip_line(scan);
+        else if (!read_corners(reader, n))
+            return false;
+    }
+    return true;
+}
+
+static bool read_elements(struct reader *reader)
+{
+    int64_t n, value;
+    if (!read_count(reader, &n))
+        return false;
+    for (int k = 0; k < 3 && reader->version == 41; k++)
+        if (!read_any(reader, &value))
+            return false;
+    for (int64_t k = 0; k < n; k++)
+        if (!(reader->version == 22 ? read_element_22(reader) : read_element_block(reader)))
+            return false;
+    return true;
+}
+
+/* ---- File
+ * ------------------------------------------------------------------------------------- */
+
+/* Leaves out a section that nobody needs. */
+static bool skip_section(struct scan *scan, const char *end)
+{
+    while (scan_word(scan)) {
+        if (scan_is(scan, end))
+            return true;
+        scan_skip_line(scan);
+    }
+    return scan_refuse(scan, end);
+}
+
+static bool read_section(struct reader *reader)
+{
+    enum { SECTION = 64 };
+    struct scan *scan = &reader->scan;
+    char end[SECTION] = "$End";
+    if (scan->word[0] != '$' || scan->length > SECTION - 5)
+        return scan_refuse(scan, "a section, like $Nodes,");
+    strncat(end, scan->word + 1, scan->length - 1);
+    bool (*read)(struct reader *) = NULL;
+    if (scan_is(scan, "$MeshFormat"))
+        read = read_format;
+    else if (reader->version == 0 && !scan_is(scan, "$Comments"))
+        return scan_refuse(scan, "$MeshFormat, the first section of a .msh file,");
+    else if (scan_is(scan, "$PhysicalNames"))
+        read = read_names;
+    else if (scan_is(scan, "$Entities") && reader->version == 41)
+        read = read_entities;
+    else if (scan_is(scan, "$Nodes"))
+        read = read_nodes;
+    else if (scan_is(scan, "$Elements"))
+        read = read_elements;
+    if (read == NULL)
+        return skip_section(scan, end);
+    return read(reader) && skip_section(scan, end);
+}
+
+static bool read_file(struct reader *reader)
+{
+    struct scan *scan = &reader->scan;
+    bool any = false;
+    for (; scan_word(scan); any = true)
+        if (!read_section(reader))
+            return false;
+    if (!any)
+        return scan_complain(scan, "there is nothing in it; $MeshFormat is expected");
+    if (reader->group != NULL && reader->physical == 0)
+        return scan_complain(scan,
+                             "there is no physical group '%s' of surfaces; %s%s is expected",
+                             reader->group, reader->others[0] != '\0' ? "one of " : "a name",
+                             reader->others[0] != '\0' ? reader->others : " in $PhysicalNames");
+    if (reader->surface->n_facets == 0)
+        return scan_complain(
+            scan, "there are no triangles or quads in it%s%s%s; at least one is expected",
+            reader->n_surface_elements > 0 ? " in group '" : "",
+            reader->n_surface_elements > 0 ? reader->group : "",
+            reader->n_surface_elements > 0 ? "'" : "");
+    return true;
+}
+
+bool gmsh_read(struct surface *surface, const char *path, const char *bytes, size_t n,
+               const char *group, char **why)
+{
+    struct reader reader = {.surface = surface, .group = group, .nodes_ascend = true};
+    *surface = (struct surface){0};
+    scan_init(&reader.scan, path, bytes, n);
+    if (group != NULL && strspn(group, "0123456789") == strlen(group)) /* one without a name */
+        reader.physical = strtoll(group, NULL, 10);
+    const bool fine = read_file(&reader);
+    *why = reader.scan.why;
+    if (fine)
+        for (int k = 0; k < reader.n_nodes; k++)
+            surface_add_vertex(surface, reader.nodes[k].place);
+    else
+        surface_clear(surface);
+    free(reader.nodes);
+    free(reader.chosen);
+    return fine;
+}

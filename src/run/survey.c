@@ -1,0 +1,168 @@
+/* See survey.h.  Only surfaces that people or other programs have drawn are suspected; the
+ * shapes of a job are what they are. */
+#include "run/survey.h"
+
+#include <stdio.h>
+#include <string.h>
+
+#include "base/comm.h"
+#include "base/report.h"
+#include "job/job.h"
+#include "model/body.h"
+#include "model/sphere.h"
+
+/* A drawing wider than this many radii is probably in other units. */
+static const double WIDE = 2e4;
+
+enum { PLACE = 96, NAME = 300 };
+
+static bool is_drawn(const struct job_body *body)
+{
+    return body->geometry == JOB_GEOMETRY_MESH || body->geometry == JOB_GEOMETRY_STL ||
+           body->geometry == JOB_GEOMETRY_GMSH;
+}
+
+/* "body 'drum', drum.stl" */
+static const char *name_of(const struct job_body *body, char text[NAME])
+{
+    const char *slash = body->file != NULL ? strrchr(body->file, '/') : NULL;
+    snprintf(text, NAME, "body '%s'%s%.200s", body->name, body->file != NULL ? ", " : "",
+             slash != NULL        ? slash + 1
+             : body->file != NULL ? body->file
+                                  : "");
+    return text;
+}
+
+void survey_check(const struct job *job, const struct bodies *bodies, struct mistakes *mistakes)
+{
+    for (int b = 0; b < bodies->n; b++) {
+        const struct mesh *mesh = &bodies->list[b].mesh;
+        const struct job_body *body = &job->bodies[b];
+        char name[NAME];
+        if (mesh->n_faces == 0 && mesh->n_bands == 0)
+            mistakes_add(mistakes, body->file != NULL ? body->file : job->path, 0, 0,
+                         "%s: none of %d facets has an area; a surface is expected",
+                         name_of(body, name), mesh->n_degenerate);
+    }
+}
+
+static double largest_side(const struct mesh_survey *survey)
+{
+    const struct vec3 size = vec3_sub(survey->high, survey->low);
+    double side = size.x > size.y ? size.x : size.y;
+    return size.z > side ? size.z : side;
+}
+
+static void print_body(const struct job *job, const struct body *body)
+{
+    const struct mesh *mesh = &body->mesh;
+    const struct mesh_survey survey = mesh_survey(mesh);
+    const int n = mesh->n_faces + mesh->n_bands;
+    report_say("body      %s: rigid, %s, %d %s%s%s", body->name,
+               job->materials[body->material].name, n,
+               mesh->n_bands > 0 ? "curved surface" : "facet", n == 1 ? "" : "s",
+               body->moves ? ", moves as prescribed" : "");
+    report_say("          x %.4g .. %.4g, y %.4g .. %.4g, z %.4g .. %.4g m", survey.low.x,
+               survey.high.x, survey.low.y, survey.high.y, survey.low.z, survey.high.z);
+    if (survey.closed && survey.n_turned == 0)
+        report_say("          area %.4g m2, closed, volume %.4g m3", survey.area,
+                   survey.volume);
+    else
+        report_say("          area %.4g m2, %s", survey.area,
+                   survey.closed ? "closed, facets look both ways" : "open");
+}
+
+void survey_print(const struct job *job, const struct bodies *bodies)
+{
+    for (int b = 0; b < bodies->n; b++)
+        print_body(job, &bodies->list[b]);
+}
+
+/* The middle of an edge, in words. */
+static const char *place_of(const struct mesh *mesh, int edge, char text[PLACE])
+{
+    const int *ends = mesh->edges[edge].vertices;
+    const struct vec3 x =
+        vec3_scale(0.5, vec3_add(mesh->reference[ends[0]], mesh->reference[ends[1]]));
+    snprintf(text, PLACE, "(%.4g, %.4g, %.4g) m", x.x, x.y, x.z);
+    return text;
+}
+
+static void warn_of_facets(const struct job_body *body, const struct mesh *mesh)
+{
+    char name[NAME];
+    if (mesh->n_degenerate > 0)
+        report_warn("%s: %d facet%s without area left out, the first is number %d",
+                    name_of(body, name), mesh->n_degenerate, mesh->n_degenerate == 1 ? "" : "s",
+                    mesh->first_degenerate + 1);
+    if (mesh->n_duplicates > 0)
+        report_warn(
+            "%s: %d facet%s left out that had been there before, the first is number %d",
+            name_of(body, name), mesh->n_duplicates, mesh->n_duplicates == 1 ? "" : "s",
+            mesh->first_duplicate + 1);
+}
+
+static void warn_of_edges(const struct job_body *body, const struct mesh *mesh,
+                          const struct mesh_survey *survey)
+{
+    char name[NAME], place[PLACE];
+    if (survey->n_open > 0)
+        report_warn("%s: %d open edge%s, the first at %s: the surface has holes or a border "
+                    "(vertices that should be one? merge: ...)",
+                    name_of(body, name), survey->n_open, survey->n_open == 1 ? "" : "s",
+                    place_of(mesh, survey->first_open, place));
+    if (survey->n_shared > 0)
+        report_warn("%s: %d edge%s of more than two facets, the first at %s",
+                    name_of(body, name), survey->n_shared, survey->n_shared == 1 ? "" : "s",
+                    place_of(mesh, survey->first_shared, place));
+    if (survey->n_turned > 0)
+        report_warn("%s: at %d edge%s facets look to opposite sides, the first at %s",
+                    name_of(body, name), survey->n_turned, survey->n_turned == 1 ? "" : "s",
+                    place_of(mesh, survey->first_turned, place));
+}
+
+static void warn_of_units(const struct job_body *body, const struct mesh_survey *survey,
+                          double least, double most)
+{
+    char name[NAME];
+    const double side = largest_side(survey);
+    if (side > WIDE * most)
+        report_warn("%s: is %.3g m wide, %.2g radii of the largest sphere; a file in mm takes "
+                    "scale: 0.001",
+                    name_of(body, name), side, side / most);
+    else if (side < 2.0 * least)
+        report_warn("%s: is %.3g m wide, less than the smallest sphere; is its scale right?",
+                    name_of(body, name), side);
+}
+
+/* Least and largest radius of all ranks' spheres; the largest is 0 where there are none [m]. */
+static void find_radii(const struct spheres *spheres, const struct comm *comm, double *least,
+                       double *most)
+{
+    *least = 1e300;
+    *most = 0.0;
+    for (int i = 0; i < spheres->n_owned; i++) {
+        const double radius = sphere_radius(spheres, i);
+        *least = radius < *least ? radius : *least;
+        *most = radius > *most ? radius : *most;
+    }
+    comm_min(comm, least, 1);
+    comm_max(comm, most, 1);
+}
+
+void survey_warn(const struct job *job, const struct bodies *bodies,
+                 const struct spheres *spheres, const struct comm *comm)
+{
+    double least, most;
+    find_radii(spheres, comm, &least, &most);
+    for (int b = 0; b < bodies->n && comm->rank == 0; b++) {
+        const struct mesh *mesh = &bodies->list[b].mesh;
+        if (!is_drawn(&job->bodies[b]))
+            continue;
+        const struct mesh_survey survey = mesh_survey(mesh);
+        warn_of_facets(&job->bodies[b], mesh);
+        warn_of_edges(&job->bodies[b], mesh, &survey);
+        if (most > 0.0)
+            warn_of_units(&job->bodies[b], &survey, least, most);
+    }
+}

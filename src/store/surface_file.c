@@ -1,0 +1,100 @@
+/* See surface_file.h.  A file is held in memory as a whole, so that its checksum is that of
+ * what was read. */
+#include "store/surface_file.h"
+
+#include <errno.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <sys/stat.h>
+
+#include "base/array.h"
+#include "base/comm.h"
+#include "job/job.h"
+#include "model/gmsh.h"
+#include "model/stl.h"
+#include "store/crc32.h"
+
+enum { LARGEST = 1 << 30 }; /* bytes */
+
+bool surface_file_has(const struct job_body *body)
+{
+    return body->geometry == JOB_GEOMETRY_STL || body->geometry == JOB_GEOMETRY_GMSH;
+}
+
+/* All bytes of a file and a zero after them. */
+static char *read_bytes(const char *path, char **bytes, size_t *n)
+{
+    struct stat about;
+    *bytes = NULL;
+    FILE *in = fopen(path, "rbe");
+    if (in == NULL || fstat(fileno(in), &about) != 0) {
+        char *why = array_format("%s: cannot be read (%s); a file with a surface is expected",
+                                 path, strerror(errno));
+        if (in != NULL)
+            fclose(in);
+        return why;
+    }
+    char *why = NULL;
+    if (S_ISDIR(about.st_mode)) {
+        why = array_format("%s: is a folder; a file with a surface is expected", path);
+    } else if (about.st_size > LARGEST) {
+        why = array_format("%s: is %.3g GB large; at most %.3g GB are expected", path,
+                           (double)about.st_size * 1e-9, (double)LARGEST * 1e-9);
+    } else {
+        *bytes = array_allocate((size_t)about.st_size + 1, 1);
+        *n = fread(*bytes, 1, (size_t)about.st_size, in);
+        if (ferror(in))
+            why = array_format("%s: cannot be read (%s); a file with a surface is expected",
+                               path, strerror(errno));
+    }
+    fclose(in);
+    return why;
+}
+
+char *surface_file_read(struct job_body *body)
+{
+    char *bytes;
+    size_t n = 0;
+    char *why = read_bytes(body->file, &bytes, &n);
+    if (why != NULL) {
+        free(bytes);
+        return why;
+    }
+    struct surface surface;
+    struct crc32 crc;
+    const bool fine = body->geometry == JOB_GEOMETRY_STL
+                          ? stl_read(&surface, body->file, bytes, n, &why)
+                          : gmsh_read(&surface, body->file, bytes, n, body->group, &why);
+    if (fine) {
+        crc32_init(&crc);
+        body->sum = (int64_t)crc32_of(&crc, bytes, n);
+        free(body->vertices);
+        free(body->facets);
+        body->n_vertices = surface.n_vertices;
+        body->vertices = surface.vertices;
+        body->n_facets = surface.n_facets;
+        body->facets = surface.facets;
+    }
+    free(bytes);
+    return why;
+}
+
+void surface_file_share(struct job *job, const struct comm *comm)
+{
+    for (int b = 0; b < job->n_bodies; b++) {
+        struct job_body *body = &job->bodies[b];
+        if (!surface_file_has(body))
+            continue;
+        int n[2] = {body->n_vertices, body->n_facets};
+        comm_broadcast(comm, n, sizeof n);
+        if (comm->rank != 0) {
+            body->n_vertices = n[0];
+            body->n_facets = n[1];
+            body->vertices = array_allocate((size_t)n[0], sizeof *body->vertices);
+            body->facets = array_allocate((size_t)n[1], sizeof *body->facets);
+        }
+        comm_broadcast(comm, body->vertices, (size_t)n[0] * sizeof *body->vertices);
+        comm_broadcast(comm, body->facets, (size_t)n[1] * sizeof *body->facets);
+    }
+}
