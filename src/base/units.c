@@ -69,6 +69,7 @@ static const struct {
     {"m/s2", "an acceleration", "9.81 m/s2"},
     {"rad/s", "an angular velocity", "100 rpm"},
     {"1/s", "a rate", "5 1/s"},
+    {"kg/s", "a mass flow", "5 kg/s"},
     {"kg/m3", "a density", "2.5 g/cm3"},
     {"Pa", "a pressure", "70 GPa"},
     {"N", "a force", "10 kN"},

@@ -20,6 +20,7 @@
 #include "model/body.h"
 #include "model/material.h"
 #include "model/sphere.h"
+#include "physics/contact_geometry.h"
 #include "physics/contact_law.h"
 
 enum { MERGE_AFTER = 1 << 20 }; /* terms that quick sums hold at most */
@@ -136,6 +137,26 @@ static void prepare_trees(struct facet_work *work, const struct bodies *bodies)
             facet_tree_refit(&work->trees[b], &bodies->list[b].mesh);
     }
     work->has_trees = true;
+}
+
+void facet_contacts_refit(struct facet_contacts *facets, const struct bodies *bodies)
+{
+    prepare_trees(facets->work, bodies);
+}
+
+bool facet_contacts_meet(const struct facet_contacts *facets, const struct bodies *bodies,
+                         struct vec3 centre, double radius)
+{
+    struct facet_work *work = facets->work;
+    struct contact_geometry at;
+    for (int b = 0; b < bodies->n; b++) {
+        const struct mesh *mesh = &bodies->list[b].mesh;
+        facet_tree_query(&work->trees[b], mesh, centre, radius, &work->found);
+        for (int k = 0; k < work->found.n; k++)
+            if (contact_geometry_touches(mesh, work->found.features[k], centre, radius, &at))
+                return true;
+    }
+    return false;
 }
 
 static void find_all_features(struct facet_tree_found *found, const struct mesh *mesh)

@@ -28,6 +28,7 @@
 #include <stdint.h>
 
 #include "base/exact_sum.h"
+#include "base/vec3.h"
 #include "contact/contact_set.h"
 
 struct spheres;
@@ -75,6 +76,13 @@ void facet_contacts_clear(struct facet_contacts *facets);
 void facet_contacts_search(struct facet_contacts *facets, const struct spheres *spheres,
                            const struct bodies *bodies, const double *body_allowance,
                            bool all_pairs);
+
+/* Does a ball there meet the surface of a body, as bodies are now?  After
+ * facet_contacts_refit() of this step. Local. */
+bool facet_contacts_meet(const struct facet_contacts *facets, const struct bodies *bodies,
+                         struct vec3 centre, double radius);
+/* Brings the search trees to where the bodies are. Local. */
+void facet_contacts_refit(struct facet_contacts *facets, const struct bodies *bodies);
 
 /* Records of all touching contacts; *records is grown (free it); returns their number.
  * Local. */

@@ -227,7 +227,8 @@ void migrate_spheres(struct migrate *migrate, const struct comm *comm,
     if (migrate->n_contacts > 0 || migrate->n_facets > 0)
         pack_records(migrate, spheres, removed);
     comm_mail_exchange(&migrate->mail, comm);
-    const int n_with_arrivals = unpack(migrate, spheres, migrate->n_before);
+    const int n_with_arrivals = unpack(migrate, spheres, migrate->n_before + migrate->n_born);
+    migrate->n_born = 0;
     for (int i = 0; i < migrate->n_before; i++)
         migrate->moved[i] = i < spheres->n_owned && !migrate->leaves[i] ? i : -1;
     migrate->owned_moved = renew_order || n_leaving > 0 || n_with_arrivals > migrate->n_before;

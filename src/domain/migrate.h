@@ -39,6 +39,7 @@ struct migrate {
     int *owner; /* rank of each owned sphere's new owner */
     unsigned char *leaves;
     bool owned_moved; /* storage indices of owned spheres changed on this rank */
+    int n_born;       /* spheres that the caller has put behind the ghosts: they stay here */
     int64_t n_left;   /* spheres that left this rank in the last migration */
     /* scratch */
     int key_capacity;
@@ -52,7 +53,8 @@ void migrate_clear(struct migrate *migrate);
 /*
  * Moves every owned sphere to the owner of its place.  removed: owned spheres that leave the
  * run, or NULL.  renew_order: cells have been renewed, so all are sorted anew.  contacts may be
- * NULL (restart: the records are the caller's).  Ghosts are gone afterwards.  Collective.
+ * NULL (restart: the records are the caller's).  Spheres that are new in the run (n_born) stand
+ * behind the ghosts, on the rank that is to own them.  Ghosts are gone afterwards.  Collective.
  */
 void migrate_spheres(struct migrate *migrate, const struct comm *comm,
                      const struct boxes *boxes, struct spheres *spheres,

@@ -316,6 +316,12 @@ static void materials_prune(struct job *job, const bool *used)
         job->spheres[i].material = index[job->spheres[i].material];
     for (int i = 0; i < job->n_bodies; i++)
         job->bodies[i].material = index[job->bodies[i].material];
+    for (int i = 0; i < job->n_insertions; i++) {
+        struct job_insertion *insertion = &job->insertions[i];
+        insertion->material = insertion->n_mix > 0 ? 0 : index[insertion->material];
+        for (int k = 0; k < insertion->n_mix; k++)
+            insertion->mix[k].material = index[insertion->mix[k].material];
+    }
     free(index);
 }
 
@@ -325,15 +331,20 @@ static int compare_doubles(const void *a, const void *b)
     return (*p > *q) - (*p < *q);
 }
 
-/* The radii half way between those that groups of one radius have; *n_classes of them. */
+/* The radii half way between those that groups and insertions of one radius have;
+ * *n_classes of them. */
 static double *classes_between(const struct job *job, int *n_classes)
 {
-    double *radii = array_allocate((size_t)job->n_spheres, sizeof *radii);
+    double *radii =
+        array_allocate((size_t)job->n_spheres + (size_t)job->n_insertions, sizeof *radii);
     int n = 0;
     *n_classes = 0;
     for (int g = 0; g < job->n_spheres; g++)
         if (job->spheres[g].radius > 0.0)
             radii[n++] = job->spheres[g].radius;
+    for (int g = 0; g < job->n_insertions; g++)
+        if (job->insertions[g].radius > 0.0)
+            radii[n++] = job->insertions[g].radius;
     qsort(radii, (size_t)n, sizeof *radii, compare_doubles);
     for (int k = 1; k < n; k++)
         if (radii[k - 1] < radii[k])

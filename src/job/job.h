@@ -264,6 +264,53 @@ struct job_section {
     double *classes; /* radii between size classes, ascending [m] */
 };
 
+/* A region whose content is reported. */
+struct job_content {
+    char *name;
+    struct job_region region;
+    int by; /* set of enum job_split */
+};
+
+/* A region out of which spheres are taken whose centre is in it. */
+struct job_removal {
+    char *name;
+    struct job_region region;
+    double start, stop; /* [s] */
+    int by;             /* set of enum job_split */
+};
+
+struct job_mix {
+    int material;
+    double share; /* of the number, in parts of the sum of all */
+};
+
+enum job_full { JOB_FULL_WAIT, JOB_FULL_STOP };
+
+/* Spheres that come in while the run goes on. */
+struct job_insertion {
+    char *name;
+    bool has_material;
+    int material; /* where there is no mix */
+    int n_mix;
+    struct job_mix *mix;
+    double radius; /* [m]; 0 with sizes */
+    struct job_sizes sizes;
+    struct job_region region; /* holds the spheres wholly */
+    struct vec3 velocity;     /* [m/s] */
+    struct vec3 spread;       /* of the velocity: evenly up to so much more or less [m/s] */
+    struct vec3 spin;         /* [rad/s] */
+    bool by_number, by_mass;  /* one of them */
+    double number_rate;       /* [1/s] */
+    double mass_rate;         /* [kg/s] */
+    double start;             /* [s] */
+    int64_t every;            /* steps between occasions */
+    int64_t until_count;      /* 0: no limit */
+    double until_mass;        /* [kg] */
+    double until_time;        /* [s] */
+    enum job_full full;
+    int by; /* set of enum job_split */
+};
+
 enum job_leavers { JOB_LEAVERS_STOP, JOB_LEAVERS_REMOVE, JOB_LEAVERS_IGNORE };
 enum job_weights { JOB_WEIGHTS_CONTACTS, JOB_WEIGHTS_CANDIDATES };
 enum job_search { JOB_SEARCH_AUTO, JOB_SEARCH_ALL_PAIRS };
@@ -288,14 +335,18 @@ struct job {
     struct job_gravity *gravity_table;
     double damping; /* mass-proportional: force = -damping * m * v [1/s] */
     int n_materials, n_pairs, n_spheres, n_bodies, n_sections;
+    int n_contents, n_insertions, n_removals;
     struct job_material *materials;
     struct job_pair *pairs;
     struct job_spheres *spheres;
     struct job_body *bodies;
     struct job_section *sections; /* at most 60 */
-    enum job_law law;             /* of pairs that say nothing else */
-    double stiffness;             /* linear: normal, of such pairs [N/m]; 0: none given */
-    bool energy_ledger;           /* contact.ledger: on by default */
+    struct job_content *contents;
+    struct job_insertion *insertions;
+    struct job_removal *removals;
+    enum job_law law;   /* of pairs that say nothing else */
+    double stiffness;   /* linear: normal, of such pairs [N/m]; 0: none given */
+    bool energy_ledger; /* contact.ledger: on by default */
     struct {
         bool given;           /* else: the extent of the scene, grown by its size */
         struct vec3 min, max; /* [m] */

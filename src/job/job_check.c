@@ -219,8 +219,8 @@ static void csv_check(const struct check *check, int i, bool *group)
  * sizes */
 
 /* What the schema cannot know of a region at this path ("spheres.0.packing.region"). */
-__attribute__((unused)) static void region_check(const struct check *check, const char *path,
-                                                 const struct job_region *region)
+static void region_check(const struct check *check, const char *path,
+                         const struct job_region *region)
 {
     const struct job *job = check->job;
     const struct vec3 along = vec3_sub(region->to, region->from);
@@ -694,6 +694,78 @@ static void ascent_check(const struct check *check, const char *path, int n,
         }
 }
 
+/* Which materials an insertion brings. */
+static void insertion_materials(const struct check *check, int i, bool *falling)
+{
+    const struct job_insertion *insertion = &check->job->insertions[i];
+    char path[64];
+    PATH("insert.%d", i);
+    if (insertion->has_material == (insertion->n_mix > 0))
+        mistake(check, path, "says %s; a material or a mix is expected",
+                insertion->has_material ? "a material and a mix" : "of no material");
+    else if (insertion->has_material && is_material(check, insertion->material))
+        falling[insertion->material] = true;
+    for (int k = 0; k < insertion->n_mix; k++)
+        if (is_material(check, insertion->mix[k].material))
+            falling[insertion->mix[k].material] = true;
+}
+
+static void insertions_check(const struct check *check, bool *falling)
+{
+    for (int i = 0; i < check->job->n_insertions; i++) {
+        const struct job_insertion *insertion = &check->job->insertions[i];
+        char path[64];
+        PATH("insert.%d.", i);
+        if (!is_clean(check, path))
+            continue;
+        insertion_materials(check, i, falling);
+        PATH("insert.%d", i);
+        if ((insertion->radius > 0.0) == insertion->sizes.given)
+            mistake(check, path, "gives %s; a radius or sizes are expected",
+                    insertion->sizes.given ? "a radius and sizes" : "no radius");
+        PATH("insert.%d.sizes", i);
+        if (insertion->sizes.given)
+            sizes_check(check, path, &insertion->sizes);
+        PATH("insert.%d.region", i);
+        region_check(check, path, &insertion->region);
+        PATH("insert.%d.rate", i);
+        if (insertion->by_number == insertion->by_mass)
+            mistake(check, path, "gives %s; a number or a mass in a second is expected",
+                    insertion->by_mass ? "a number and a mass" : "nothing");
+        PATH("insert.%d.until.time", i);
+        if (!(insertion->until_time > insertion->start))
+            mistake(check, path, "is not after start; a later time is expected");
+    }
+}
+
+static void removals_check(const struct check *check)
+{
+    for (int i = 0; i < check->job->n_removals; i++) {
+        const struct job_removal *removal = &check->job->removals[i];
+        char path[64];
+        PATH("remove.%d.", i);
+        if (!is_clean(check, path))
+            continue;
+        PATH("remove.%d.region", i);
+        region_check(check, path, &removal->region);
+        PATH("remove.%d.stop", i);
+        if (!(removal->start < removal->stop))
+            mistake(check, path, "is not after start; a later time is expected");
+    }
+}
+
+static void contents_check(const struct check *check)
+{
+    for (int i = 0; i < check->job->n_contents; i++) {
+        char path[64];
+        PATH("contents.%d.", i);
+        if (!is_clean(check, path))
+            continue;
+        PATH("contents.%d.region", i);
+        region_check(check, path, &check->job->contents[i].region);
+    }
+}
+
 static void sections_check(const struct check *check)
 {
     for (int i = 0; i < check->job->n_sections; i++) {
@@ -800,8 +872,17 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     names_check(&check, "spheres", job->n_spheres, job->spheres, sizeof *job->spheres);
     names_check(&check, "bodies", job->n_bodies, job->bodies, sizeof *job->bodies);
     names_check(&check, "sections", job->n_sections, job->sections, sizeof *job->sections);
+    names_check(&check, "contents", job->n_contents, job->contents, sizeof *job->contents);
+    names_check(&check, "insert", job->n_insertions, job->insertions, sizeof *job->insertions);
+    names_check(&check, "remove", job->n_removals, job->removals, sizeof *job->removals);
     spheres_check(&check, read_files, falling);
     bodies_check(&check, read_files, standing);
+    if (job->n_spheres == 0 && job->n_insertions == 0 && is_clean(&check, "spheres") &&
+        is_clean(&check, "insert"))
+        mistake(&check, "spheres", "are missing; a group of spheres, or `insert`, is expected");
+    insertions_check(&check, falling);
+    removals_check(&check);
+    contents_check(&check);
     sections_check(&check);
     gravity_check(&check);
     domain_check(&check);

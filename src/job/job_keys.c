@@ -52,8 +52,10 @@ static const char *const geometries[] = {
 static const char *const caps[] = {"from", "to", NULL};
 static const char *const sides[] = {"x_min", "x_max", "y_min", "y_max", "bottom", "top", NULL};
 static const char *const section_kinds[] = {"plane", "disc", "rectangle", NULL};
+static const char *const materials_only[] = {"material", NULL};
 static const char *const splits[] = {"material", "size", NULL};
 static const char *const drives[] = {"slide", "turn", NULL};
+static const char *const fulls[] = {"wait", "stop", NULL};
 static const char *const leavers[] = {"stop", "remove", "ignore", NULL};
 static const char *const weights[] = {"contacts", "candidates", NULL};
 static const char *const searches[] = {"auto", "all-pairs", NULL};
@@ -558,6 +560,95 @@ static const struct schema_key section_keys[] = {
      LIST_AT(struct job_section, classes, n_classes)},
     END};
 
+#define BY_MATERIAL(type)                                                                      \
+    {                                                                                          \
+        "by", SCHEMA_CHOICES, "what is counted apart as well: each material",                  \
+            .standard = "[]", .choices = materials_only, AT(type, by)                          \
+    }
+
+static const struct schema_key content_keys[] = {
+    {"name", SCHEMA_NAME, "name of the content, used once", .required = true,
+     AT(struct job_content, name)},
+    {"region", SCHEMA_GROUP, "spheres count whose centre is in it", .required = true,
+     REGION_AT(struct job_content, region)},
+    BY_MATERIAL(struct job_content),
+    END};
+
+static const struct schema_key mix_keys[] = {
+    {"material", SCHEMA_REFERENCE, "one of the materials", .required = true,
+     AT(struct job_mix, material)},
+    {"share", SCHEMA_NUMBER, "its share of the number, in parts of the sum of all", .unit = "1",
+     .required = true, ABOVE_TO(0.0, 1e9), AT(struct job_mix, share)},
+    END};
+
+static const struct schema_key rate_keys[] = {
+    {"number", SCHEMA_NUMBER, "spheres in a second", .unit = "1/s", ABOVE_TO(0.0, 1e12),
+     GIVEN(struct job_insertion, by_number), AT(struct job_insertion, number_rate)},
+    {"mass", SCHEMA_NUMBER, "mass in a second", .unit = "kg/s", ABOVE_TO(0.0, 1e12),
+     GIVEN(struct job_insertion, by_mass), AT(struct job_insertion, mass_rate)},
+    END};
+
+static const struct schema_key until_keys[] = {
+    {"count", SCHEMA_COUNT, "so many spheres have come in; 0: however many", .standard = "0",
+     BETWEEN(0.0, 2e9), AT(struct job_insertion, until_count)},
+    {"mass", SCHEMA_NUMBER, "the next sphere would bring more mass than this in all",
+     .unit = "kg", .standard = "never", ABOVE(0.0), .word = "never", .word_value = INFINITY,
+     AT(struct job_insertion, until_mass)},
+    {"time", SCHEMA_NUMBER, "this instant", .unit = "s", .standard = "never", ABOVE(0.0),
+     .word = "never", .word_value = INFINITY, AT(struct job_insertion, until_time)},
+    END};
+
+static const struct schema_key insertion_keys[] = {
+    {"name", SCHEMA_NAME, "name of the insertion, used once", .required = true,
+     AT(struct job_insertion, name)},
+    {"material", SCHEMA_REFERENCE, "what the spheres are made of, unless there is a mix",
+     GIVEN(struct job_insertion, has_material), AT(struct job_insertion, material)},
+    {"mix", SCHEMA_LIST, "several materials and their shares; each sphere's is drawn",
+     UP_TO(1000.0), .inside = mix_keys, LIST_AT(struct job_insertion, mix, n_mix)},
+    {"radius", SCHEMA_NUMBER, "radius of all of them", .unit = "m", ABOVE_TO(0.0, FAR),
+     GIVEN(struct job_insertion, radius), AT(struct job_insertion, radius)},
+    {"sizes", SCHEMA_GROUP, "radii that differ, instead of `radius`",
+     SIZES_AT(struct job_insertion, sizes)},
+    {"region", SCHEMA_GROUP,
+     "where they appear: places are drawn evenly such that a sphere lies wholly within and "
+     "touches nothing",
+     .required = true, REGION_AT(struct job_insertion, region)},
+    {"velocity", SCHEMA_NUMBER, "velocity that they come with", .unit = "m/s", .standard = ZERO,
+     BETWEEN(-FAR, FAR), AT(struct job_insertion, velocity)},
+    {"velocity_spread", SCHEMA_NUMBER,
+     "each velocity differs from `velocity` evenly by up to so much along x, y and z",
+     .unit = "m/s", .standard = ZERO, BETWEEN(0.0, FAR), AT(struct job_insertion, spread)},
+    {"spin", SCHEMA_NUMBER, "angular velocity that they come with", .unit = "rad/s",
+     .standard = ZERO, BETWEEN(-FAR, FAR), AT(struct job_insertion, spin)},
+    {"rate", SCHEMA_GROUP, "how much comes in, by number or by mass", .required = true,
+     .inside = rate_keys},
+    {"start", SCHEMA_NUMBER, "when it begins", .unit = "s", .standard = "0", BETWEEN(0.0, 1e9),
+     AT(struct job_insertion, start)},
+    {"until", SCHEMA_GROUP, "when it ends: with the first of these, or with the run",
+     .inside = until_keys},
+    {"every", SCHEMA_COUNT,
+     "steps between occasions: what is due comes in at their multiples, and searches follow",
+     .standard = "64", BETWEEN(1.0, 1e9), AT(struct job_insertion, every)},
+    {"when_full", SCHEMA_CHOICE,
+     "what happens when a sphere finds no room in 100 attempts: it waits for the next "
+     "occasion, so the insertion falls behind and catches up; or the run stops",
+     .standard = "wait", .choices = fulls, AT(struct job_insertion, full)},
+    BY_MATERIAL(struct job_insertion),
+    END};
+
+static const struct schema_key removal_keys[] = {
+    {"name", SCHEMA_NAME, "name of the removal, used once", .required = true,
+     AT(struct job_removal, name)},
+    {"region", SCHEMA_GROUP,
+     "spheres whose centre is in it are taken out at multiples of 64 steps", .required = true,
+     REGION_AT(struct job_removal, region)},
+    {"start", SCHEMA_NUMBER, "when it begins", .unit = "s", .standard = "0", BETWEEN(0.0, 1e9),
+     AT(struct job_removal, start)},
+    {"stop", SCHEMA_NUMBER, "when it ends", .unit = "s", .standard = "never", AT_LEAST(0.0),
+     .word = "never", .word_value = INFINITY, AT(struct job_removal, stop)},
+    BY_MATERIAL(struct job_removal),
+    END};
+
 static const struct schema_key domain_keys[] = {
     {"min", SCHEMA_NUMBER,
      "least corner of the region that spheres may be in; by default the scene's extent, grown "
@@ -672,15 +763,25 @@ const struct schema_key job_keys[] = {
      .required = true, UP_TO(1000.0), .inside = material_keys,
      LIST_AT(struct job, materials, n_materials)},
     {"contact", SCHEMA_GROUP, "what happens between materials", .inside = contact_keys},
-    {"spheres", SCHEMA_LIST, "groups of spheres; ids run through them in this order",
-     .required = true, BETWEEN(1.0, 10000.0), .inside = spheres_keys,
-     LIST_AT(struct job, spheres, n_spheres)},
+    {"spheres", SCHEMA_LIST,
+     "groups of spheres that are there at the start; ids run through them in this order",
+     UP_TO(10000.0), .inside = spheres_keys, LIST_AT(struct job, spheres, n_spheres)},
+    {"insert", SCHEMA_LIST,
+     "spheres that come in while the run goes on; their groups are counted on from those of "
+     "`spheres`",
+     UP_TO(1000.0), .inside = insertion_keys, LIST_AT(struct job, insertions, n_insertions)},
+    {"remove", SCHEMA_LIST,
+     "regions that take spheres out of the run; where they overlap the first one counts",
+     UP_TO(1000.0), .inside = removal_keys, LIST_AT(struct job, removals, n_removals)},
     {"bodies", SCHEMA_LIST,
      "surfaces of quads and triangles: at rest, moving as prescribed or moved by forces",
      UP_TO(10000.0), .inside = body_keys, LIST_AT(struct job, bodies, n_bodies)},
     {"sections", SCHEMA_LIST,
      "planes, discs and rectangles that count what passes through them", UP_TO(60.0),
      .inside = section_keys, LIST_AT(struct job, sections, n_sections)},
+    {"contents", SCHEMA_LIST,
+     "regions whose content is recorded: number, mass and mean velocity of the spheres in them",
+     UP_TO(1000.0), .inside = content_keys, LIST_AT(struct job, contents, n_contents)},
     {"domain", SCHEMA_GROUP, "the region that spheres may be in", .inside = domain_keys},
     {"decomposition", SCHEMA_GROUP, "how the work is shared among ranks; changes no result",
      .inside = decomposition_keys},

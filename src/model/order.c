@@ -20,6 +20,13 @@ static int64_t cell_along(double x, double inverse_size)
     return (int64_t)(cell + limit);
 }
 
+int64_t order_cell_at(const double x[3], double radius_max)
+{
+    const double inverse_size = radius_max > 0.0 ? 1.0 / (2.2 * radius_max) : 1.0;
+    return (cell_along(x[2], inverse_size) << (2 * CELL_BITS)) |
+           (cell_along(x[1], inverse_size) << CELL_BITS) | cell_along(x[0], inverse_size);
+}
+
 void order_renew(struct spheres *spheres, const struct comm *comm)
 {
     double radius_max = 0.0;
@@ -28,13 +35,8 @@ void order_renew(struct spheres *spheres, const struct comm *comm)
         radius_max = radius > radius_max ? radius : radius_max;
     }
     comm_max(comm, &radius_max, 1);
-    const double inverse_size = radius_max > 0.0 ? 1.0 / (2.2 * radius_max) : 1.0;
-    for (int i = 0; i < spheres->n_owned; i++) {
-        const double *x = sphere_position(spheres, i);
-        spheres->order_cell[i] = (cell_along(x[2], inverse_size) << (2 * CELL_BITS)) |
-                                 (cell_along(x[1], inverse_size) << CELL_BITS) |
-                                 cell_along(x[0], inverse_size);
-    }
+    for (int i = 0; i < spheres->n_owned; i++)
+        spheres->order_cell[i] = order_cell_at(sphere_position(spheres, i), radius_max);
 }
 
 static bool key_before(const struct order_key *a, const struct order_key *b)

@@ -26,6 +26,9 @@ static inline bool order_before(int64_t cell_a, int64_t id_a, int64_t cell_b, in
     return cell_a != cell_b ? cell_a < cell_b : id_a < id_b;
 }
 
+/* The cell that a place is in where the largest radius in the run is this.  Local. */
+int64_t order_cell_at(const double x[3], double radius_max);
+
 /* Gives every owned sphere the cell in which it is now.  Collective. */
 void order_renew(struct spheres *spheres, const struct comm *comm);
 

@@ -13,6 +13,7 @@
 #include "model/body.h"
 #include "model/material.h"
 #include "model/packing.h"
+#include "run/inflow.h"
 #include "run/limits.h"
 #include "run/simulation.h"
 #include "run/step.h"
@@ -134,6 +135,8 @@ static void choose_times(struct job *job, double speed)
     materials_build(&materials, job);
     for (int g = 0; g < job->n_spheres; g++)
         add_limits(&limits, job, &materials, g);
+    for (int k = 0; k < job->n_insertions; k++)
+        inflow_add_limits(&limits, job, &materials, k);
     materials_clear(&materials);
     if (limits.rayleigh < 1e299)
         job->time.step = limits_step(&limits, job->time.safety);
@@ -222,7 +225,12 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
     bodies_build(&bodies, job);
     survey_check(job, &bodies, mistakes);
     add_bodies(&bodies, &scene);
+    inflow_check(job, &bodies, &scene.low, &scene.high, mistakes);
     choose_domain(job, &scene);
+    for (int k = 0; k < job->n_insertions; k++) {
+        const double incoming = inflow_of(job, k).speed;
+        speed = incoming > speed ? incoming : speed;
+    }
     if (job->time.step == 0.0)
         choose_times(job, foresee_speed(job, &bodies, speed));
     bodies_clear(&bodies);
@@ -313,6 +321,30 @@ static void print_group(const struct job *job, int g, const struct group_summary
 }
 
 /* All groups; returns how many spheres there are. */
+static void print_insertion(const struct job *job, int k, const struct materials *materials,
+                            double speed)
+{
+    const struct job_insertion *insertion = &job->insertions[k];
+    const struct inflow inflow = inflow_of(job, k);
+    struct limits limits = limits_nothing(speed);
+    report_say(
+        "insert    %s: %.0f spheres, %.4g kg, expected from %.6g s on; radius %.4g .. %.4g "
+        "m, %.4g kg each in the mean",
+        insertion->name, inflow.n, inflow.mass, insertion->start, inflow.radius_least,
+        inflow.radius_most, inflow.mean_mass);
+    report_say("          every %lld steps, %.3g s: %.4g spheres", (long long)insertion->every,
+               (double)insertion->every * job->time.step,
+               inflow.rate * (double)insertion->every * job->time.step);
+    inflow_add_limits(&limits, job, materials, k);
+    print_limits(job, &limits);
+    warn_of_limits(job, insertion->name, &limits);
+    if (speed * job->time.step > job->watch.motion * inflow.radius_least)
+        report_warn("at %.3g m/s spheres of '%s' or bodies move %.2g of the least radius in a "
+                    "step, more than watch.motion = %.2g",
+                    speed, insertion->name, speed * job->time.step / inflow.radius_least,
+                    job->watch.motion);
+}
+
 static int64_t print_groups(const struct job *job, const struct bodies *bodies,
                             struct extent *scene)
 {
@@ -331,10 +363,16 @@ static int64_t print_groups(const struct job *job, const struct bodies *bodies,
         extent_add(scene, groups[g].extent.high, 0.0);
         n += groups[g].n;
     }
+    for (int k = 0; k < job->n_insertions; k++) {
+        const double incoming = inflow_of(job, k).speed;
+        speed = incoming > speed ? incoming : speed;
+    }
     materials_build(&materials, job);
     speed = foresee_speed(job, bodies, speed);
     for (int g = 0; g < job->n_spheres; g++)
         print_group(job, g, &groups[g], &materials, speed);
+    for (int k = 0; k < job->n_insertions; k++)
+        print_insertion(job, k, &materials, speed);
     materials_clear(&materials);
     free(groups);
     return n;
@@ -389,18 +427,27 @@ void check_print(const struct job *job, const struct comm *comm)
     print_extent("domain   ", &domain);
     for (int s = 0; s < job->n_sections; s++)
         report_say("section   %s", job->sections[s].name);
+    for (int k = 0; k < job->n_contents; k++)
+        report_say("content   %s", job->contents[k].name);
+    for (int k = 0; k < job->n_removals; k++)
+        report_say("remove    %s", job->removals[k].name);
     if (n <= START_MOST * (int64_t)n_ranks)
         print_start(job, comm);
-    const double particle_steps = (double)n * n_steps;
+    double n_mean = (double)n, n_most = (double)n;
+    for (int k = 0; k < job->n_insertions; k++) {
+        const struct inflow inflow = inflow_of(job, k);
+        n_mean += inflow.n_mean;
+        n_most += inflow.n;
+    }
+    const double particle_steps = n_mean * n_steps;
     report_say(
         "cost      %.3g particle-steps: of the order of %.3g s on %d rank%s; memory of the "
         "order of %.3g MB",
         particle_steps, particle_steps * NANOSECONDS_A_STEP * 1e-9 / n_ranks, n_ranks,
-        n_ranks == 1 ? "" : "s", (double)n * BYTES_A_SPHERE * 1e-6);
+        n_ranks == 1 ? "" : "s", n_most * BYTES_A_SPHERE * 1e-6);
     if (job->watch.motion + job->watch.overlap >= 1.0)
         report_warn("watch.motion and watch.overlap add up to 1 or more: a sphere could pass "
                     "through a surface unnoticed");
-    if (n < 500 * (int64_t)n_ranks && n_ranks > 1)
-        report_warn("%lld spheres on %d ranks: fewer ranks would be faster", (long long)n,
-                    n_ranks);
+    if (n_most < 500.0 * n_ranks && n_ranks > 1)
+        report_warn("%.0f spheres on %d ranks: fewer ranks would be faster", n_most, n_ranks);
 }

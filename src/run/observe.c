@@ -28,6 +28,26 @@ static const double OVERLAP_SCALE = 0x1p40;
 /* Half of the unit of an exact sum. [J] */
 static const double SUM_ROUNDING = 0x1p-71;
 
+/* What comes into the run and leaves it. */
+static void add_exchange_columns(struct series *table, const struct simulation *sim)
+{
+    const struct job *job = sim->job;
+    for (int k = 0; k < sim->insertions.n; k++) {
+        const char *name = job->insertions[k].name;
+        const bool by_mass = job->insertions[k].by_mass;
+        series_add_column(table, by_mass ? "kg" : "1", "what its rate asks for so far",
+                          "%s.%s_asked", name, by_mass ? "mass" : "count");
+        tally_add_columns(&sim->insertions.list[k].tally.split, job, table, name, "_inserted",
+                          "that came in");
+    }
+    for (int k = 0; k < sim->removals.n; k++)
+        tally_add_columns(&sim->removals.list[k].taken.split, job, table, job->removals[k].name,
+                          "_removed", "that were taken out");
+    if (job->domain.leavers == JOB_LEAVERS_REMOVE)
+        tally_add_columns(&sim->removals.leavers.split, job, table, "domain", "_left",
+                          "that left the domain");
+}
+
 void observe_init(struct observe *observe, const struct simulation *sim)
 {
     *observe = (struct observe){0};
@@ -49,10 +69,12 @@ void observe_init(struct observe *observe, const struct simulation *sim)
                       "dissipated_tangential");
     series_add_column(table, "J", "work of prescribed motion on the spheres", "work_bodies");
     series_add_column(table, "J", "energy carried away by spheres that left", "removed_energy");
-    series_add_column(
-        table, "J",
-        "energy now, dissipated and carried away, less energy at the start and work",
-        "balance");
+    series_add_column(table, "J", "energy carried in by spheres that came in",
+                      "inserted_energy");
+    series_add_column(table, "J",
+                      "energy now, dissipated and carried away, less energy at the start, "
+                      "carried in and work",
+                      "balance");
     series_add_column(table, "1", "largest overlap over radius since the row before",
                       "overlap_max");
     series_add_column(table, "m/s", "largest speed", "speed_max");
@@ -77,6 +99,8 @@ void observe_init(struct observe *observe, const struct simulation *sim)
         tally_add_columns(&passed[1].split, sim->job, table, name, "_backward",
                           "that passed against the normal");
     }
+    contents_add_columns(&sim->contents, sim->job, table);
+    add_exchange_columns(table, sim);
 }
 
 void observe_clear(struct observe *observe)
@@ -212,10 +236,10 @@ static double total_of(const struct simulation *sim, const struct exact_sum *sha
     return exact_sum_value(&sum);
 }
 
-/* What is there now, gone to heat or carried away, less what was put in. */
-static double energy_held(const double energies[N_ENERGIES], double removed)
+/* What is there now, gone to heat or `carried` away less carried in, less what was put in. */
+static double energy_held(const double energies[N_ENERGIES], double carried)
 {
-    double held = removed - energies[ENERGY_WORK];
+    double held = carried - energies[ENERGY_WORK];
     for (int e = 0; e < ENERGY_WORK; e++)
         held += energies[e];
     return held;
@@ -234,20 +258,22 @@ static double energy_scale(const struct simulation *sim, const double energies[N
     return scale;
 }
 
-/* Closes the balance: notes what there was at the start, and the error. */
+/* Closes the balance: notes what there was at the start, and the error.  carried[] is what
+ * spheres carried away and in. */
 static void close_balance(struct simulation *sim, const double energies[N_ENERGIES],
-                          double *removed, double *balance)
+                          double carried[2], double *balance)
 {
     struct observe *observe = &sim->observe;
-    *removed = total_of(sim, &observe->totals[OBSERVE_REMOVED_ENERGY]);
-    const double held = energy_held(energies, *removed);
+    carried[0] = total_of(sim, &observe->totals[OBSERVE_REMOVED_ENERGY]);
+    carried[1] = total_of(sim, &observe->totals[OBSERVE_INSERTED_ENERGY]);
+    const double held = energy_held(energies, carried[0] - carried[1]);
     if (sim->step == 0 && sim->comm->rank == 0) {
         observe->totals[OBSERVE_ENERGY_START] = (struct exact_sum){0};
         exact_sum_add(&observe->totals[OBSERVE_ENERGY_START], held);
     }
     *balance = held - total_of(sim, &observe->totals[OBSERVE_ENERGY_START]);
     /* The most so far: all of it may be potential energy just now. */
-    const double turned = energy_scale(sim, energies, *removed);
+    const double turned = energy_scale(sim, energies, carried[0]);
     const double before = total_of(sim, &observe->totals[OBSERVE_TURNED]);
     const double scale = turned > before ? turned : before;
     if (turned > before && sim->comm->rank == 0) {
@@ -259,22 +285,23 @@ static void close_balance(struct simulation *sim, const double energies[N_ENERGI
 
 void observe_energy(struct simulation *sim)
 {
-    double energies[N_ENERGIES], speed_max, removed, balance;
+    double energies[N_ENERGIES], speed_max, carried[2], balance;
     int64_t counts[3];
     if (!sim->job->energy_ledger)
         return;
     sum_energies(sim, energies, &speed_max, counts);
-    close_balance(sim, energies, &removed, &balance);
+    close_balance(sim, energies, carried, &balance);
 }
 
 static int add_energy_values(struct simulation *sim, double *row, int n,
                              const double energies[N_ENERGIES])
 {
-    double removed, balance;
-    close_balance(sim, energies, &removed, &balance);
+    double carried[2], balance;
+    close_balance(sim, energies, carried, &balance);
     for (int e = 0; e < N_ENERGIES; e++)
         row[n++] = energies[e];
-    row[n++] = removed;
+    row[n++] = carried[0];
+    row[n++] = carried[1];
     row[n++] = sim->job->energy_ledger ? balance : (double)NAN;
     return n;
 }
@@ -302,6 +329,30 @@ static int add_section_values(struct simulation *sim, double *row, int n)
     return n;
 }
 
+static int add_content_values(struct simulation *sim, double *row, int n)
+{
+    double v[3], w[3];
+    contents_begin(&sim->contents);
+    for (int i = 0; sim->contents.n > 0 && i < sim->spheres.n_owned; i++) {
+        centred_motion(sim, i, v, w);
+        contents_add(&sim->contents, &sim->spheres, i, v);
+    }
+    return contents_values(&sim->contents, sim->comm, row, n);
+}
+
+static int add_exchange_values(struct simulation *sim, double *row, int n)
+{
+    for (int k = 0; k < sim->insertions.n; k++) {
+        row[n++] = insertion_due(&sim->job->insertions[k], (double)sim->step * sim->dt);
+        n = tally_totals(&sim->insertions.list[k].tally, sim->comm, row, n);
+    }
+    for (int k = 0; k < sim->removals.n; k++)
+        n = tally_totals(&sim->removals.list[k].taken, sim->comm, row, n);
+    if (sim->job->domain.leavers == JOB_LEAVERS_REMOVE)
+        n = tally_totals(&sim->removals.leavers, sim->comm, row, n);
+    return n;
+}
+
 void observe_sample(struct simulation *sim)
 {
     struct observe *observe = &sim->observe;
@@ -321,6 +372,8 @@ void observe_sample(struct simulation *sim)
     const double last = total_of(sim, &observe->totals[OBSERVE_LAST_STEP]);
     n = add_body_values(sim, row, n, (double)(sim->step + 1) - last);
     n = add_section_values(sim, row, n);
+    n = add_content_values(sim, row, n);
+    n = add_exchange_values(sim, row, n);
     CHECK(n == observe->table.n_columns, "%d values for %d columns", n,
           observe->table.n_columns);
     if (sim->comm->rank == 0) {
@@ -354,6 +407,16 @@ void observe_removed(struct simulation *sim, int i)
     exact_sum_add(&totals[OBSERVE_REMOVED_TANGENTIAL], energies[ENERGY_TANGENTIAL]);
 }
 
+/* Background damping takes the whole of this step: half of it stands in the energies now. */
+void observe_inserted(struct simulation *sim, int i)
+{
+    double energies[N_ENERGIES] = {0.0};
+    sphere_energies(sim, i, energies);
+    exact_sum_add(&sim->observe.totals[OBSERVE_INSERTED_ENERGY],
+                  energies[ENERGY_TRANSLATION] + energies[ENERGY_ROTATION] +
+                      energies[ENERGY_POTENTIAL] + energies[ENERGY_DAMPING]);
+}
+
 static void add_monitor(struct observe_monitor **monitors, int *n, int *capacity,
                         struct exact_sum *sum, const char *owner, const char *what)
 {
@@ -382,6 +445,7 @@ int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
     static const char *const totals[OBSERVE_N_TOTALS] = {
         "energy_start",       "removed_energy", "removed_friction", "removed_damping",
         "removed_tangential", "last_step",      "turned",           "overlap",
+        "inserted_energy",
     };
     static const char *const loads[] = {"force_x",  "force_y",  "force_z",
                                         "torque_x", "torque_y", "torque_z"};
@@ -405,5 +469,16 @@ int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
         add_tally(monitors, &n, &capacity, &passed[0], owner, "_forward");
         add_tally(monitors, &n, &capacity, &passed[1], owner, "_backward");
     }
+    for (int k = 0; k < sim->insertions.n; k++) {
+        char owner[32];
+        snprintf(owner, sizeof owner, "insertion_%d", k);
+        add_tally(monitors, &n, &capacity, &sim->insertions.list[k].tally, owner, "");
+    }
+    for (int k = 0; k < sim->removals.n; k++) {
+        char owner[32];
+        snprintf(owner, sizeof owner, "removal_%d", k);
+        add_tally(monitors, &n, &capacity, &sim->removals.list[k].taken, owner, "");
+    }
+    add_tally(monitors, &n, &capacity, &sim->removals.leavers, "leavers", "");
     return n;
 }

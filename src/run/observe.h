@@ -24,9 +24,10 @@ enum observe_total {
     OBSERVE_REMOVED_FRICTION, /* dissipated by them before they left [J] */
     OBSERVE_REMOVED_DAMPING,
     OBSERVE_REMOVED_TANGENTIAL,
-    OBSERVE_LAST_STEP, /* step of the last sample, plus one; on rank 0 */
-    OBSERVE_TURNED,    /* largest energy turned over so far [J]; on rank 0 */
-    OBSERVE_OVERLAP,   /* largest overlap/radius since then, times 2^40; on rank 0 */
+    OBSERVE_LAST_STEP,       /* step of the last sample, plus one; on rank 0 */
+    OBSERVE_TURNED,          /* largest energy turned over so far [J]; on rank 0 */
+    OBSERVE_OVERLAP,         /* largest overlap/radius since then, times 2^40; on rank 0 */
+    OBSERVE_INSERTED_ENERGY, /* carried in by spheres that came in [J] */
     OBSERVE_N_TOTALS,
 };
 
@@ -49,6 +50,9 @@ void observe_energy(struct simulation *sim);
 void observe_overlap(struct simulation *sim, double overlap);
 /* Books sphere i as leaving the run. */
 void observe_removed(struct simulation *sim, int i);
+
+/* Books sphere i as coming into the run. */
+void observe_inserted(struct simulation *sim, int i);
 
 /* All running totals under their names, for checkpoints: n names and the sums' places. */
 struct observe_monitor {

@@ -192,7 +192,10 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
     if (!has_fixed_grid(sim) && (lost || is_multiple(sim->step, job->force.repartition_every)))
         repartition(sim);
     runtime_end(&sim->runtime, RUNTIME_REPARTITION);
-    const bool moves = sim->comm->n_ranks > 1 || renew || removed != NULL;
+    const bool born = sim->insertions.n_new > 0;
+    if (born)
+        insertions_place(sim);
+    const bool moves = sim->comm->n_ranks > 1 || renew || removed != NULL || born;
     update_subdomains(sim, moves, renew, removed, &sim->contacts);
     runtime_end(&sim->runtime, RUNTIME_REDISTRIBUTE);
     search(sim, moves ? sim->migrate.moved : NULL, removed != NULL);

@@ -2,8 +2,8 @@
  * Both levels of redistribution and global search: who owns what, who may touch whom.
  *
  * Any of it may happen at any step for any reason and changes no bit; the exceptions are the
- * renewal of canonical order and the removal of spheres, which fall on steps that the job
- * fixes.
+ * renewal of canonical order, the removal and the insertion of spheres, which fall on steps
+ * that the job fixes.
  */
 #ifndef TREMIE_RUN_REDISTRIBUTE_H
 #define TREMIE_RUN_REDISTRIBUTE_H
@@ -17,8 +17,8 @@ bool redistribute_is_due(const struct simulation *sim);
 /* The same for the inner list alone. */
 bool redistribute_inner_is_due(const struct simulation *sim);
 
-/* Makes everything anew.  removed marks owned spheres that leave the run, or is NULL.
- * Collective. */
+/* Makes everything anew.  removed marks owned spheres that leave the run, or is NULL; what
+ * insertions_try() has found room for comes in.  Collective. */
 void redistribute(struct simulation *sim, const unsigned char *removed);
 /* Makes the inner list anew out of the candidates.  Local, on all ranks together. */
 void redistribute_inner(struct simulation *sim);

@@ -22,13 +22,25 @@ int64_t simulation_steps(double time, double step)
     return (int64_t)((n < most ? n : most) + 0.5);
 }
 
+/* Largest, and minus the least, material so far. */
+static void add_material(int64_t extremes[2], int64_t material)
+{
+    extremes[0] = material > extremes[0] ? material : extremes[0];
+    extremes[1] = -material > extremes[1] ? -material : extremes[1];
+}
+
+/* Of all spheres that are here or will come in. */
 static bool one_material(const struct simulation *sim)
 {
-    int64_t extremes[2] = {-1, -1000000}; /* largest, and minus the least, material */
-    for (int i = 0; i < sim->spheres.n_owned; i++) {
-        const int64_t material = sim->spheres.material[i];
-        extremes[0] = material > extremes[0] ? material : extremes[0];
-        extremes[1] = -material > extremes[1] ? -material : extremes[1];
+    int64_t extremes[2] = {-1, -1000000};
+    for (int i = 0; i < sim->spheres.n_owned; i++)
+        add_material(extremes, sim->spheres.material[i]);
+    for (int k = 0; k < sim->job->n_insertions; k++) {
+        const struct job_insertion *insertion = &sim->job->insertions[k];
+        if (insertion->n_mix == 0)
+            add_material(extremes, insertion->material);
+        for (int m = 0; m < insertion->n_mix; m++)
+            add_material(extremes, insertion->mix[m].material);
     }
     comm_max_int(sim->comm, extremes, 2);
     return extremes[0] == -extremes[1];
@@ -46,8 +58,13 @@ static double choose_half_buffer(const struct simulation *sim)
         exact_sum_add(&sums[1], 1.0);
     }
     exact_sum_reduce(sim->comm, sums, 2);
-    const double mean = exact_sum_value(&sums[0]) / exact_sum_value(&sums[1]);
-    return 0.25 * mean;
+    double radius = exact_sum_value(&sums[0]), n = exact_sum_value(&sums[1]);
+    for (int k = 0; k < sim->insertions.n && sim->n_spheres == 0; k++) {
+        const struct sizes *sizes = &sim->insertions.list[k].sizes;
+        radius += 0.5 * (sizes->min + sizes->max);
+        n += 1.0;
+    }
+    return n > 0.0 ? 0.25 * radius / n : 1.0;
 }
 
 /* All that does not depend on where the spheres come from. */
@@ -69,6 +86,9 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     halo_init(&sim->halo, comm);
     migrate_init(&sim->migrate, comm);
     sections_init(&sim->sections, job);
+    contents_init(&sim->contents, job, &sim->bodies);
+    insertions_init(&sim->insertions, job, &sim->bodies);
+    removals_init(&sim->removals, job, &sim->bodies);
     observe_init(&sim->observe, sim);
     watch_init(&sim->watch, job->checkpoint.every_wall);
 }
@@ -90,12 +110,10 @@ static void finish(struct simulation *sim, enum pair_kernel_isa isa)
     runtime_begin(&sim->runtime);
 }
 
-static void add_sphere(struct simulation *sim, int64_t id, int group,
-                       const struct packing_sphere *new)
+void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
+                           const struct packing_sphere *new)
 {
     struct spheres *spheres = &sim->spheres;
-    const int i = spheres->n_owned++;
-    spheres_reserve(spheres, spheres->n_owned);
     spheres->motion[i] =
         (struct sphere_row){{new->position.x, new->position.y, new->position.z, new->radius,
                              new->velocity.x, new->velocity.y, new->velocity.z, new->radius}};
@@ -124,7 +142,9 @@ void simulation_create(struct simulation *sim, const struct comm *comm, const st
         const int64_t end = packing.n * (comm->rank + 1) / comm->n_ranks;
         for (int64_t k = first; k < end; k++) {
             const struct packing_sphere sphere = packing_get(&packing, k);
-            add_sphere(sim, sim->next_id + k, g, &sphere);
+            const int i = sim->spheres.n_owned++;
+            spheres_reserve(&sim->spheres, i + 1);
+            simulation_set_sphere(sim, i, sim->next_id + k, g, &sphere);
         }
         sim->next_id += packing.n;
         packing_close(&packing);
@@ -132,6 +152,17 @@ void simulation_create(struct simulation *sim, const struct comm *comm, const st
     sim->spheres.n_all = sim->spheres.n_owned;
     order_renew(&sim->spheres, comm);
     finish(sim, isa);
+}
+
+/* Files of before there was such a total have none. */
+static bool may_be_missing(const char *name)
+{
+    static const char *const later[] = {"run.turned", "run.inserted_energy", "leavers.count",
+                                        "leavers.mass"};
+    for (size_t k = 0; k < sizeof later / sizeof *later; k++)
+        if (strcmp(name, later[k]) == 0)
+            return true;
+    return false;
 }
 
 /* Totals from the file: rank 0 holds them, the others hold nothing yet. */
@@ -146,7 +177,7 @@ static int restore_monitors(struct simulation *sim, const struct checkpoint *che
             found = strcmp(checkpoint->monitors[c].name, monitors[m].name) == 0 ? c : found;
         if (found >= 0)
             *monitors[m].sum = checkpoint->monitors[found].sum;
-        else if (strcmp(monitors[m].name, "run.turned") != 0) /* files of 0.1 have none */
+        else if (!may_be_missing(monitors[m].name))
             status = REPORT_STORAGE;
     }
     free(monitors);
@@ -181,7 +212,8 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
                                     .ledger = sim->job->energy_ledger};
     int status = checkpoint_read(comm, checkpoint_path, &checkpoint);
     const bool fits = status == REPORT_FINISHED && fits_job(sim, &checkpoint) &&
-                      restore_monitors(sim, &checkpoint) == REPORT_FINISHED;
+                      restore_monitors(sim, &checkpoint) == REPORT_FINISHED &&
+                      insertions_take_notes(&sim->insertions, &checkpoint.notes);
     if (status == REPORT_FINISHED && comm_agree(comm, fits ? 0 : 1) != 0) {
         report_error("%s has other materials, bodies or sections than the job; "
                      "use the job it belongs to",
@@ -220,6 +252,9 @@ void simulation_destroy(struct simulation *sim)
     halo_clear(&sim->halo);
     migrate_clear(&sim->migrate);
     sections_clear(&sim->sections);
+    contents_clear(&sim->contents);
+    insertions_clear(&sim->insertions);
+    removals_clear(&sim->removals);
     observe_clear(&sim->observe);
     runtime_clear(&sim->runtime);
 }
@@ -286,6 +321,7 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
         checkpoint.monitors[m].sum = *totals[m].sum;
     }
     free(totals);
+    insertions_put_notes(&sim->insertions, &checkpoint.notes);
     char *path = run_folder_checkpoint_path(folder, sim->step);
     const int status = checkpoint_write(sim->comm, path, &checkpoint);
     free(path);

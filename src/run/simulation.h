@@ -19,12 +19,16 @@
 #include "model/body.h"
 #include "model/material.h"
 #include "model/sphere.h"
+#include "run/contents.h"
+#include "run/insertion.h"
 #include "run/observe.h"
+#include "run/removal.h"
 #include "run/runtime.h"
 #include "run/sections.h"
 #include "run/watch.h"
 
 struct job;
+struct packing_sphere;
 struct run_folder;
 
 /* Ages of the lists, in shares of what they allow: 1 means stale. */
@@ -65,6 +69,9 @@ struct simulation {
     struct simulation_spent spent;
 
     struct sections sections;
+    struct contents contents;
+    struct insertions insertions;
+    struct removals removals;
     struct observe observe;
     struct watch watch;
     struct runtime runtime;
@@ -82,6 +89,10 @@ void simulation_destroy(struct simulation *sim);
  * Returns a REPORT_ status.  Collective. */
 int simulation_save(struct simulation *sim, const struct run_folder *folder,
                     const char *job_text);
+/* Writes a sphere that is new in the run as sphere i, in its order cell apart.  Local. */
+void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
+                           const struct packing_sphere *new);
+
 /* Sizes on this rank, for the runtime table.  Local. */
 struct runtime_sizes simulation_sizes(const struct simulation *sim);
 /* The rows so far alone.  Collective. */

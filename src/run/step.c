@@ -2,6 +2,7 @@
  * The time step.  Places are those at n, velocities those at n - 1/2 when a step begins:
  *
  *   1 prescribed motion of the bodies                             model/body.h
+ *     now and then: spheres leave the run and come in             removal.h, insertion.h
  *   2 if stale: redistribute (both levels), global search         redistribute.h
  *   3 local search and contact laws of spheres with facets        contact/facet_contact.h
  *   4 contact laws of pairs of spheres, with history              contact/pair_kernel.h
@@ -23,23 +24,33 @@
 #include "run/redistribute.h"
 #include "run/simulation.h"
 
-/* Steps between looks for spheres that left the domain: when they are removed is part of the
- * result. */
-enum { LEAVERS_EVERY = 64 };
-
-static void remove_leavers(struct simulation *sim)
+/* Marks the spheres that leave the run; returns how many there are on all ranks. */
+static int64_t mark_removed(struct simulation *sim, unsigned char *removed)
 {
-    if (sim->job->domain.leavers == JOB_LEAVERS_IGNORE || sim->step % LEAVERS_EVERY != 0)
-        return;
-    unsigned char *removed = array_allocate((size_t)sim->spheres.n_owned, 1);
-    const int n = watch_leavers(&sim->watch, sim, removed);
-    if (n > 0) {
-        for (int i = 0; i < sim->spheres.n_owned; i++) {
-            if (removed[i])
-                observe_removed(sim, i);
-        }
-        sim->n_spheres -= n;
-        redistribute(sim, removed);
+    int64_t n = 0;
+    if (sim->removals.n > 0) {
+        n = removals_mark(&sim->removals, &sim->spheres, (double)sim->step * sim->dt, removed);
+        comm_sum_int(sim->comm, &n, 1);
+    }
+    if (sim->job->domain.leavers != JOB_LEAVERS_IGNORE)
+        n += watch_leavers(&sim->watch, sim, removed);
+    for (int i = 0; n > 0 && i < sim->spheres.n_owned; i++)
+        if (removed[i])
+            observe_removed(sim, i);
+    return n;
+}
+
+/* Spheres leave the run and come into it: at steps that the job fixes, for it is part of the
+ * result. */
+static void exchange_spheres(struct simulation *sim)
+{
+    const bool takes = sim->step % REMOVAL_EVERY == 0;
+    unsigned char *removed = takes ? array_allocate((size_t)sim->spheres.n_owned, 1) : NULL;
+    const int64_t n_removed = takes ? mark_removed(sim, removed) : 0;
+    const int n_new = insertions_try(sim, removed);
+    if (n_removed > 0 || n_new > 0) {
+        sim->n_spheres += n_new - n_removed;
+        redistribute(sim, n_removed > 0 ? removed : NULL);
     }
     free(removed);
 }
@@ -131,7 +142,7 @@ void step_forces(struct simulation *sim)
     runtime_begin(runtime);
     bodies_place(&sim->bodies, sim->step, sim->dt);
     runtime_end(runtime, RUNTIME_BODIES);
-    remove_leavers(sim);
+    exchange_spheres(sim);
     if (redistribute_is_due(sim))
         redistribute(sim, NULL);
     else if (redistribute_inner_is_due(sim))

@@ -261,6 +261,10 @@ void watch_searched(struct watch *watch, const struct simulation *sim)
 void watch_bodies(struct watch *watch, const struct simulation *sim)
 {
     double radius_least = 1e300;
+    for (int k = 0; k < sim->insertions.n; k++) {
+        const double radius = sim->insertions.list[k].sizes.min;
+        radius_least = radius < radius_least ? radius : radius_least;
+    }
     for (int i = 0; i < sim->spheres.n_owned; i++) {
         const double radius = sphere_radius(&sim->spheres, i);
         radius_least = radius < radius_least ? radius : radius_least;
@@ -359,6 +363,12 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
         fail(watch, WATCH_NOT_A_NUMBER);
 }
 
+void watch_full(struct watch *watch, const char *what)
+{
+    fail(watch, WATCH_FULL);
+    snprintf(watch->what, sizeof watch->what, "%s", what);
+}
+
 void watch_energy(struct watch *watch, const struct simulation *sim)
 {
     const double limit = sim->job->watch.energy, error = sim->observe.energy_error;
@@ -378,9 +388,12 @@ int watch_leavers(struct watch *watch, struct simulation *sim, unsigned char *re
     int64_t n = 0;
     int first = -1;
     for (int i = 0; i < sim->spheres.n_owned; i++) {
-        removed[i] = is_outside(sim->job, sphere_position(&sim->spheres, i));
-        n += removed[i];
-        first = removed[i] && first < 0 ? i : first;
+        if (removed[i] || !is_outside(sim->job, sphere_position(&sim->spheres, i)))
+            continue;
+        removed[i] = 1;
+        n++;
+        first = first < 0 ? i : first;
+        tally_add(&sim->removals.leavers, &sim->spheres, i);
     }
     if (first >= 0) {
         const double *x = sphere_position(&sim->spheres, first);
@@ -596,6 +609,12 @@ static void explain_others(enum watch_failure failure, const struct simulation *
                      "and domain.max, or set domain.leavers to remove or ignore",
                      when, what);
         break;
+    case WATCH_FULL:
+        report_error(
+            "region full at %s: %s; enlarge it, let spheres leave it faster, lower the "
+            "rate, or set when_full to wait",
+            when, what);
+        break;
     case WATCH_ENERGY:
         report_error("energy balance at %s: off by %.3g of the energy turned over, more than "
                      "watch.energy = %.3g, so the step is too large for these impacts; use a "
@@ -633,7 +652,8 @@ void watch_explain(const struct watch *watch, const struct simulation *sim)
         ((watch->failure == WATCH_NOT_A_NUMBER || watch->failure == WATCH_SUMS) &&
          deepest.overlap > sim->job->watch.overlap);
     const bool starts_deep = too_deep && sim->step <= 1;
-    const bool by_contacts = watch->failure != WATCH_FAR && watch->failure != WATCH_LEAVER;
+    const bool by_contacts = watch->failure != WATCH_FAR && watch->failure != WATCH_LEAVER &&
+                             watch->failure != WATCH_FULL;
     /* Whatever rang: beyond the critical step the step is to blame. */
     if (watch->failure == WATCH_STEP || (sim->dt > critical && by_contacts && !starts_deep))
         explain_step(sim, when, critical, &deepest, own.what);

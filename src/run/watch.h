@@ -24,6 +24,7 @@ enum watch_failure {
     WATCH_MOTION, /* a sphere or body moves too far in one step: contacts would be missed */
     WATCH_FAR,    /* so far from the origin that rounding of places spoils contacts */
     WATCH_LEAVER, /* a sphere left the domain */
+    WATCH_FULL,   /* an insertion finds no room, and is to stop then */
     WATCH_ENERGY, /* the energy balance does not close */
     WATCH_SUMS,   /* a total is beyond what exact sums hold */
 };
@@ -66,6 +67,9 @@ void watch_contacts(struct watch *watch, const struct simulation *sim);
 /* The step's one reduction: spent[] becomes the largest on any rank.  Collective. */
 void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], bool bad);
 
+/* Notes that an insertion finds no room; the same on all ranks. */
+void watch_full(struct watch *watch, const char *what);
+
 /* Looks at the energy balance just made.  The same on all ranks. */
 void watch_energy(struct watch *watch, const struct simulation *sim);
 
@@ -75,8 +79,9 @@ double watch_critical_step(const struct simulation *sim);
 /* The deepest contact of the last forces, over radius [-]; `what` says whose.  Collective. */
 double watch_deepest(const struct simulation *sim, char *what, size_t size);
 
-/* Spheres outside the domain, at steps that the job fixes: stops the run, or marks them in
- * removed[] (n_owned flags) and returns how many there are on all ranks.  Collective. */
+/* Spheres outside the domain that removed[] (n_owned flags) does not mark yet, at steps that
+ * the job fixes: stops the run, or marks and counts them and returns how many there are on all
+ * ranks.  Collective. */
 int watch_leavers(struct watch *watch, struct simulation *sim, unsigned char *removed);
 
 /* Says what failed, where and what to do, on one rank.  Collective. */

@@ -1,0 +1,168 @@
+/* See inflow.h. */
+#include "run/inflow.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdint.h>
+#include <stdlib.h>
+
+#include "base/report.h"
+#include "job/job.h"
+#include "model/packing.h"
+#include "model/region.h"
+#include "model/sizes.h"
+#include "run/insertion.h"
+#include "run/limits.h"
+
+/* ------------------------------------------------------------------------------- regions */
+
+/* Notes where a region lies; false, its mistake listed, where it cannot be built. */
+static bool add_region(const struct job *job, const char *list, const char *name,
+                       const struct job_region *asked, const struct bodies *bodies,
+                       struct region *region, struct mistakes *mistakes)
+{
+    char *why = NULL;
+    const bool fine = region_build(region, asked, bodies, &why);
+    if (!fine)
+        mistakes_add(mistakes, job->path, 0, 0, "%s: the region of '%s': %s", list, name, why);
+    free(why);
+    return fine;
+}
+
+static bool region_is_in_domain(const struct job *job, const struct region *region)
+{
+    const struct vec3 low = job->domain.min, high = job->domain.max;
+    return region->low.x >= low.x && region->low.y >= low.y && region->low.z >= low.z &&
+           region->high.x <= high.x && region->high.y <= high.y && region->high.z <= high.z;
+}
+
+/* Does the region hold a sphere of this radius anywhere, as far as many attempts tell? */
+static bool region_holds(const struct region *region, double radius)
+{
+    enum { ATTEMPTS = 10000 };
+    for (uint64_t a = 0; a < ATTEMPTS; a++)
+        if (region_contains(region, region_point(region, radius, 0, 0, a), radius))
+            return true;
+    return false;
+}
+
+static double lesser(double a, double b)
+{
+    return a < b ? a : b;
+}
+
+static double greater(double a, double b)
+{
+    return a > b ? a : b;
+}
+
+/* Grows the box from low to high by a region. */
+static void include(struct vec3 *low, struct vec3 *high, const struct region *region)
+{
+    *low = (struct vec3){lesser(low->x, region->low.x), lesser(low->y, region->low.y),
+                         lesser(low->z, region->low.z)};
+    *high = (struct vec3){greater(high->x, region->high.x), greater(high->y, region->high.y),
+                          greater(high->z, region->high.z)};
+}
+
+static void check_insertion(const struct job *job, const struct job_insertion *insertion,
+                            const struct bodies *bodies, struct vec3 *low, struct vec3 *high,
+                            struct mistakes *mistakes)
+{
+    struct region region;
+    struct sizes sizes;
+    if (!add_region(job, "insert", insertion->name, &insertion->region, bodies, &region,
+                    mistakes))
+        return;
+    sizes_build(&sizes, &insertion->sizes, insertion->radius);
+    include(low, high, &region);
+    if (job->domain.given && !region_is_in_domain(job, &region))
+        mistakes_add(
+            mistakes, job->path, 0, 0,
+            "insert: the region of '%s' reaches beyond the domain; one inside domain.min "
+            "and domain.max is expected",
+            insertion->name);
+    if (!region_holds(&region, sizes.max))
+        mistakes_add(
+            mistakes, job->path, 0, 0,
+            "insert: the region of '%s' holds no sphere of radius %.4g m; a larger one "
+            "is expected",
+            insertion->name, sizes.max);
+    sizes_clear(&sizes);
+    region_clear(&region);
+}
+
+void inflow_check(const struct job *job, const struct bodies *bodies, struct vec3 *low,
+                  struct vec3 *high, struct mistakes *mistakes)
+{
+    struct region region;
+    for (int k = 0; k < job->n_insertions; k++)
+        check_insertion(job, &job->insertions[k], bodies, low, high, mistakes);
+    for (int k = 0; k < job->n_removals; k++)
+        if (add_region(job, "remove", job->removals[k].name, &job->removals[k].region, bodies,
+                       &region, mistakes))
+            region_clear(&region);
+    for (int k = 0; k < job->n_contents; k++)
+        if (add_region(job, "contents", job->contents[k].name, &job->contents[k].region, bodies,
+                       &region, mistakes))
+            region_clear(&region);
+}
+
+/* ------------------------------------------------------------------------------- insertions */
+
+static double mean_density(const struct job *job, const struct job_insertion *insertion)
+{
+    double sum = 0.0, shares = 0.0;
+    for (int m = 0; m < insertion->n_mix; m++) {
+        sum += insertion->mix[m].share * job->materials[insertion->mix[m].material].density;
+        shares += insertion->mix[m].share;
+    }
+    return insertion->n_mix > 0 ? sum / shares : job->materials[insertion->material].density;
+}
+
+struct inflow inflow_of(const struct job *job, int number)
+{
+    const struct job_insertion *insertion = &job->insertions[number];
+    struct sizes sizes;
+    struct vec3 most = insertion->spread;
+    sizes_build(&sizes, &insertion->sizes, insertion->radius);
+    most.x += fabs(insertion->velocity.x);
+    most.y += fabs(insertion->velocity.y);
+    most.z += fabs(insertion->velocity.z);
+    struct inflow inflow = {
+        .mean_mass = sizes.mean_volume * mean_density(job, insertion),
+        .radius_least = sizes.min,
+        .radius_most = sizes.max,
+        .speed = vec3_norm(most),
+    };
+    const double due = insertion_due(insertion, job->time.end);
+    inflow.n = insertion->by_mass ? due / inflow.mean_mass : due;
+    if (insertion->until_count > 0 && inflow.n > (double)insertion->until_count)
+        inflow.n = (double)insertion->until_count;
+    if (inflow.n * inflow.mean_mass > insertion->until_mass)
+        inflow.n = insertion->until_mass / inflow.mean_mass;
+    inflow.mass = inflow.n * inflow.mean_mass;
+    inflow.rate =
+        insertion->by_mass ? insertion->mass_rate / inflow.mean_mass : insertion->number_rate;
+    const double began = job->time.end - insertion->start, took = inflow.n / inflow.rate;
+    if (began > 0.0)
+        inflow.n_mean = inflow.n * (began - 0.5 * took) / job->time.end;
+    sizes_clear(&sizes);
+    return inflow;
+}
+
+void inflow_add_limits(struct limits *limits, const struct job *job,
+                       const struct materials *materials, int number)
+{
+    const struct job_insertion *insertion = &job->insertions[number];
+    const struct inflow inflow = inflow_of(job, number);
+    const int n = insertion->n_mix > 0 ? insertion->n_mix : 1;
+    for (int m = 0; m < n; m++) {
+        struct packing_sphere sphere = {
+            .material = insertion->n_mix > 0 ? insertion->mix[m].material : insertion->material,
+            .radius = inflow.radius_least};
+        limits_add(limits, job, materials, &sphere);
+        sphere.radius = inflow.radius_most;
+        limits_add(limits, job, materials, &sphere);
+    }
+}
