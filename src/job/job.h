@@ -81,7 +81,13 @@ struct job_sizes {
     struct job_size *list; /* list, table */
 };
 
-enum job_packing { JOB_PACKING_LATTICE, JOB_PACKING_CSV };
+enum job_packing {
+    JOB_PACKING_LATTICE,
+    JOB_PACKING_HEXAGONAL,
+    JOB_PACKING_RANDOM,
+    JOB_PACKING_CSV,
+    JOB_PACKING_HDF5
+};
 
 /* A group of spheres.  Ids run through the groups in the order of the file. */
 struct job_spheres {
@@ -99,8 +105,17 @@ struct job_spheres {
     double spacing; /* [m] */
     struct vec3 corner;
     double size[2]; /* [m] */
+    /* Random: so many, or as many as make up a mass or a share of the region's volume; 0: not
+     * given. */
+    double mass;     /* [kg] */
+    double fraction; /* [-] */
+    struct job_region region;
+    double gap;       /* least distance between surfaces [m] */
+    int64_t attempts; /* places tried for one sphere */
+    bool avoid_bodies;
     /* CSV with a header line that names columns: x_m,y_m,z_m and optionally radius_m, material,
-     * vx_m_s,vy_m_s,vz_m_s (resolved relative to the job file). */
+     * vx_m_s,vy_m_s,vz_m_s (resolved relative to the job file).  HDF5 with /spheres/position,
+     * radius and, where given, velocity, angular_velocity. */
     char *file;
     int64_t sum; /* checksum of that file */
 };

@@ -316,6 +316,9 @@ static void lattice_check(const struct check *check, int i)
     const struct job_spheres *spheres = &check->job->spheres[i];
     const double diameter = 2.0 * greatest_radius(spheres);
     char path[64], number[SCHEMA_DOUBLE];
+    PATH("spheres.%d.packing.count", i);
+    if (spheres->count == 0)
+        mistake(check, path, "is missing; a whole number between 1 and 2e9 is expected");
     PATH("spheres.%d.packing.spacing", i);
     if (spheres->spacing < diameter * (1.0 - 1e-12))
         mistake(check, path,
@@ -330,17 +333,31 @@ static void lattice_check(const struct check *check, int i)
                 schema_double(number, diameter));
 }
 
+static void random_check(const struct check *check, int i)
+{
+    const struct job_spheres *spheres = &check->job->spheres[i];
+    const int n = (spheres->count > 0) + (spheres->mass > 0.0) + (spheres->fraction > 0.0);
+    char path[64];
+    PATH("spheres.%d.packing", i);
+    if (n != 1)
+        mistake(check, path, "says %s; one of count, mass and fraction is expected",
+                n == 0 ? "not how many spheres there are" : "twice how many spheres there are");
+    PATH("spheres.%d.packing.region", i);
+    region_check(check, path, &spheres->region);
+}
+
 /* A group has a radius or sizes; a CSV file may have the radii. */
 static bool radii_are_fine(const struct check *check, int i)
 {
     const struct job_spheres *spheres = &check->job->spheres[i];
-    const bool in_file = spheres->packing == JOB_PACKING_CSV;
+    const bool in_file =
+        spheres->packing == JOB_PACKING_CSV || spheres->packing == JOB_PACKING_HDF5;
     const int n_before = check->mistakes->n;
     char path[64];
     PATH("spheres.%d.sizes", i);
     if (spheres->sizes.given && in_file)
         mistake(check, path,
-                "do not go with a packing from a file; its column radius_m, or "
+                "do not go with a packing from a file; the file's radii, or "
                 "radius, is expected");
     else if (spheres->sizes.given && spheres->radius > 0.0)
         mistake(check, path, "are given besides a radius; one of the two is expected");
@@ -362,8 +379,12 @@ static void spheres_check(const struct check *check, bool read_files, bool *fall
         if (!is_clean(check, path) || !is_material(check, job->spheres[i].material))
             continue;
         check->used[job->spheres[i].material] = true; /* even where a CSV file names others */
-        if (radii_are_fine(check, i) && job->spheres[i].packing == JOB_PACKING_LATTICE)
+        const enum job_packing packing = job->spheres[i].packing;
+        if (radii_are_fine(check, i) &&
+            (packing == JOB_PACKING_LATTICE || packing == JOB_PACKING_HEXAGONAL))
             lattice_check(check, i);
+        if (packing == JOB_PACKING_RANDOM)
+            random_check(check, i);
         if (job->spheres[i].packing == JOB_PACKING_CSV && read_files)
             csv_check(check, i, falling);
         else

@@ -165,8 +165,10 @@ bool packing_open(struct packing *packing, const struct job *job, int group, cha
                                 .sizes_stream = random_stream(RANDOM_PACKING_SIZES, group)};
     *why = NULL;
     sizes_build(&packing->sizes, &packing->group->sizes, packing->group->radius);
-    if (packing->group->packing == JOB_PACKING_LATTICE) {
-        packing->n = packing->group->count;
+    if (packing->group->packing != JOB_PACKING_CSV) {
+        if (packing->group->packing == JOB_PACKING_LATTICE ||
+            packing->group->packing == JOB_PACKING_HEXAGONAL)
+            packing->n = packing->group->count;
         return true;
     }
     struct reader reader = {.path = packing->group->file, .why = why};
@@ -191,17 +193,44 @@ void packing_close(struct packing *packing)
     packing->n = 0;
 }
 
+/* As many places as fit, with a hair's breadth for what 5.28 / 0.22 does not divide to. */
+static int64_t places(double room)
+{
+    const int64_t n = (int64_t)(room + 1e-9);
+    return n > 0 ? n : 1;
+}
+
+/* The k-th place of a cubic lattice, in spacings from the corner. */
+static struct vec3 cubic_place(const struct job_spheres *group, int64_t k)
+{
+    const int64_t n = places(group->size[0] / group->spacing);
+    const int64_t m = places(group->size[1] / group->spacing);
+    const int64_t layer = k / (n * m), row = k / n % m, column = k % n;
+    return (struct vec3){(double)column + 0.5, (double)row + 0.5, (double)layer + 0.5};
+}
+
+/* Of hexagonal close packing: every other row half a spacing along, every other layer over the
+ * gaps of the one below. */
+static struct vec3 hexagonal_place(const struct job_spheres *group, int64_t k)
+{
+    const double row_height = sqrt(3.0) / 2.0, layer_height = sqrt(6.0) / 3.0;
+    const double along = group->size[0] / group->spacing;
+    const double across = group->size[1] / group->spacing;
+    const int64_t n = places(along - 0.5);
+    const int64_t m = places((across - 1.0 - row_height / 3.0) / row_height + 1.0);
+    const int64_t layer = k / (n * m), row = k / n % m, column = k % n;
+    const double odd = (double)(layer % 2);
+    return (struct vec3){(double)column + 0.5 * (double)((row + layer) % 2) + 0.5,
+                         row_height * ((double)row + odd / 3.0) + 0.5,
+                         layer_height * (double)layer + 0.5};
+}
+
 static struct packing_sphere lattice_sphere(const struct packing *packing, int64_t k)
 {
     const struct job_spheres *group = packing->group;
-    /* As many places as fit, with a hair's breadth for what 5.28 / 0.22 does not divide to. */
-    int64_t n[2];
-    for (int c = 0; c < 2; c++) {
-        n[c] = (int64_t)(group->size[c] / group->spacing + 1e-9);
-        n[c] = n[c] > 0 ? n[c] : 1;
-    }
-    const int64_t layer = k / (n[0] * n[1]), row = k / n[0] % n[1], column = k % n[0];
-    const struct vec3 steps = {(double)column + 0.5, (double)row + 0.5, (double)layer + 0.5};
+    const struct vec3 steps = group->packing == JOB_PACKING_HEXAGONAL
+                                  ? hexagonal_place(group, k)
+                                  : cubic_place(group, k);
     return (struct packing_sphere){
         .position = vec3_axpy(group->corner, group->spacing, steps),
         .velocity = group->velocity,

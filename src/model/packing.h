@@ -1,6 +1,6 @@
 /*
  * Where a group's spheres are at the start: the k-th place of a lattice, or the k-th row of a
- * CSV file.
+ * file or of what random addition found (model/packings).
  */
 #ifndef TREMIE_MODEL_PACKING_H
 #define TREMIE_MODEL_PACKING_H
@@ -27,10 +27,11 @@ struct packing {
     int64_t n;
     uint64_t seed, sizes_stream;
     struct sizes sizes;
-    struct packing_sphere *rows; /* of a CSV file; NULL for a lattice */
+    struct packing_sphere *rows; /* NULL for a lattice */
 };
 
-/* Reads what a group needs.  Returns false with the reason in *why (caller frees):
+/* Reads what a group needs; a random one and one of an HDF5 file have no spheres yet: see
+ * packings_open.  Returns false with the reason in *why (caller frees):
  * "file:line:column: what; what is expected".  Local. */
 bool packing_open(struct packing *packing, const struct job *job, int group, char **why);
 void packing_close(struct packing *packing);

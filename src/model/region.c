@@ -32,8 +32,8 @@ struct triangle {
 struct region_surface {
     int n;
     struct triangle *triangles;
-    struct vec3 origin; /* of the grid [m] */
-    double cell;        /* edge of a cell [m] */
+    struct vec3 origin, end; /* of the grid, and of all triangles [m] */
+    double cell;             /* edge of a cell [m] */
     int cells[3];
     int *begin, *list; /* triangles of cell c: list[begin[c]] .. list[begin[c + 1] - 1] */
 };
@@ -83,12 +83,11 @@ static int cell_index(const struct region_surface *s, int i, int j, int k)
 }
 
 /* Cubes, some four for each triangle. */
-static void choose_cells(struct region_surface *s, struct vec3 low, struct vec3 high)
+static void choose_cells(struct region_surface *s)
 {
-    const struct vec3 size = vec3_sub(high, low);
+    const struct vec3 size = vec3_sub(s->end, s->origin);
     const double longest = greater(size.x, greater(size.y, size.z));
     const double along[3] = {size.x, size.y, size.z};
-    s->origin = low;
     for (int n = 1; n <= CELLS_ALONG_MOST; n++) {
         s->cell = longest / (double)n;
         for (int c = 0; c < 3; c++)
@@ -183,6 +182,39 @@ static void add_triangle(struct region_surface *s, const struct mesh *mesh, int 
         box_add(&t->low, &t->high, t->corners[k]);
 }
 
+struct region_surface *region_surface_build(const struct mesh *mesh)
+{
+    struct region_surface *s = array_allocate(1, sizeof *s);
+    s->triangles = array_allocate(2 * (size_t)mesh->n_faces, sizeof *s->triangles);
+    for (int f = 0; f < mesh->n_faces; f++) {
+        const int *v = mesh->faces[f].vertices;
+        add_triangle(s, mesh, v[0], v[1], v[2]);
+        if (mesh->faces[f].n == 4)
+            add_triangle(s, mesh, v[0], v[2], v[3]);
+    }
+    for (int t = 0; t < s->n; t++) {
+        if (t == 0) {
+            s->origin = s->triangles[0].low;
+            s->end = s->triangles[0].high;
+        }
+        box_add(&s->origin, &s->end, s->triangles[t].low);
+        box_add(&s->origin, &s->end, s->triangles[t].high);
+    }
+    choose_cells(s);
+    build_cells(s);
+    return s;
+}
+
+void region_surface_destroy(struct region_surface *surface)
+{
+    if (surface != NULL) {
+        free(surface->triangles);
+        free(surface->begin);
+        free(surface->list);
+    }
+    free(surface);
+}
+
 /* By the divergence theorem: pyramids over the triangles, seen from a corner of the box. */
 static double enclosed_volume(const struct region_surface *s, struct vec3 from)
 {
@@ -208,25 +240,10 @@ static bool build_surface(struct region *region, const char *name, const struct 
     }
     if (!is_closed(body, why))
         return false;
-    const struct mesh *mesh = &body->mesh;
-    struct region_surface *s = array_allocate(1, sizeof *s);
-    s->triangles = array_allocate(2 * (size_t)mesh->n_faces, sizeof *s->triangles);
-    for (int f = 0; f < mesh->n_faces; f++) {
-        const int *v = mesh->faces[f].vertices;
-        add_triangle(s, mesh, v[0], v[1], v[2]);
-        if (mesh->faces[f].n == 4)
-            add_triangle(s, mesh, v[0], v[2], v[3]);
-    }
-    region->low = s->triangles[0].low;
-    region->high = s->triangles[0].high;
-    for (int t = 1; t < s->n; t++) {
-        box_add(&region->low, &region->high, s->triangles[t].low);
-        box_add(&region->low, &region->high, s->triangles[t].high);
-    }
-    region->volume = enclosed_volume(s, region->low);
-    choose_cells(s, region->low, region->high);
-    build_cells(s);
-    region->surface = s;
+    region->surface = region_surface_build(&body->mesh);
+    region->low = region->surface->origin;
+    region->high = region->surface->end;
+    region->volume = enclosed_volume(region->surface, region->low);
     return true;
 }
 
@@ -291,12 +308,7 @@ bool region_build(struct region *region, const struct job_region *asked,
 
 void region_clear(struct region *region)
 {
-    if (region->surface != NULL) {
-        free(region->surface->triangles);
-        free(region->surface->begin);
-        free(region->surface->list);
-    }
-    free(region->surface);
+    region_surface_destroy(region->surface);
     region->surface = NULL;
 }
 
@@ -330,8 +342,7 @@ static double triangle_distance(const struct triangle *t, struct vec3 x)
     return over ? lesser(least, height * height / area) : least;
 }
 
-/* Is a triangle of the surface nearer to x than the margin? */
-static bool is_near(const struct region_surface *s, struct vec3 x, double margin)
+bool region_surface_is_near(const struct region_surface *s, struct vec3 x, double margin)
 {
     const struct vec3 grow = {margin, margin, margin};
     const struct cells c = cells_of(s, vec3_sub(x, grow), vec3_add(x, grow));
@@ -418,7 +429,8 @@ bool region_contains(const struct region *region, struct vec3 x, double margin)
     case JOB_REGION_SPHERE:
         return vec3_norm(vec3_sub(x, region->centre)) <= region->radius - margin;
     case JOB_REGION_INSIDE:
-        return is_in_box(region, x, margin) && !is_near(region->surface, x, margin) &&
+        return is_in_box(region, x, margin) &&
+               !region_surface_is_near(region->surface, x, margin) &&
                is_within(region->surface, x);
     }
     return false;

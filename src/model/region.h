@@ -15,6 +15,7 @@
 #include "job/job.h"
 
 struct bodies;
+struct mesh;
 struct region_surface;
 
 struct region {
@@ -40,5 +41,11 @@ bool region_contains(const struct region *region, struct vec3 x, double margin);
  * next.  Attempts from 0; each takes the counters 3 attempt .. 3 attempt + 2 of the stream. */
 struct vec3 region_point(const struct region *region, double margin, uint64_t seed,
                          uint64_t stream, uint64_t attempt);
+
+/* The surface of any body, closed or not, as it is at time 0. */
+struct region_surface *region_surface_build(const struct mesh *mesh);
+void region_surface_destroy(struct region_surface *surface);
+/* Is it nearer to x than the margin? */
+bool region_surface_is_near(const struct region_surface *surface, struct vec3 x, double margin);
 
 #endif

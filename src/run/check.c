@@ -12,15 +12,23 @@
 #include "job/job.h"
 #include "model/body.h"
 #include "model/material.h"
+<<<<<<< HEAD
 #include "model/packing.h"
 #include "run/inflow.h"
+=======
+#include "model/packings.h"
+>>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
 #include "run/limits.h"
 #include "run/simulation.h"
 #include "run/step.h"
 #include "run/survey.h"
 #include "store/crc32.h"
 #include "store/file.h"
+<<<<<<< HEAD
 #include "store/surface_file.h"
+=======
+#include "store/sphere_file.h"
+>>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
 
 enum { ALL_PAIRS_MOST = 20000 }; /* 2e8 pairs */
 
@@ -114,29 +122,29 @@ static double foresee_speed(const struct job *job, const struct bodies *bodies,
 
 /* What the spheres of a group allow. */
 static void add_limits(struct limits *limits, const struct job *job,
-                       const struct materials *materials, int group)
+                       const struct materials *materials, const struct packing *packing)
 {
-    struct packing packing;
-    char *why = NULL;
-    CHECK(packing_open(&packing, job, group, &why), "%s", why);
-    const bool alike = packing.rows == NULL && !packing.group->sizes.given;
-    const int64_t n = alike && packing.n > 0 ? 1 : packing.n;
+    const bool alike = packing->rows == NULL && !packing->group->sizes.given;
+    const int64_t n = alike && packing->n > 0 ? 1 : packing->n;
     for (int64_t k = 0; k < n; k++) {
-        const struct packing_sphere sphere = packing_get(&packing, k);
+        const struct packing_sphere sphere = packing_get(packing, k);
         limits_add(limits, job, materials, &sphere);
     }
-    packing_close(&packing);
 }
 
-static void choose_times(struct job *job, double speed)
+static void choose_times(struct job *job, const struct packings *packings, double speed)
 {
     struct limits limits = limits_nothing(speed);
     struct materials materials;
     materials_build(&materials, job);
     for (int g = 0; g < job->n_spheres; g++)
+<<<<<<< HEAD
         add_limits(&limits, job, &materials, g);
     for (int k = 0; k < job->n_insertions; k++)
         inflow_add_limits(&limits, job, &materials, k);
+=======
+        add_limits(&limits, job, &materials, &packings->groups[g]);
+>>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
     materials_clear(&materials);
     if (limits.rayleigh < 1e299)
         job->time.step = limits_step(&limits, job->time.safety);
@@ -148,6 +156,7 @@ static void choose_times(struct job *job, double speed)
     }
 }
 
+<<<<<<< HEAD
 /* A packing or a surface says "file:line:column: what"; the place goes where places go. */
 static void add_file_mistake(struct mistakes *mistakes, const char *file, const char *why)
 {
@@ -159,16 +168,21 @@ static void add_file_mistake(struct mistakes *mistakes, const char *file, const 
 }
 
 /* Checksum of a CSV file that has just been read; 0 when it has gone. */
+=======
+/* Checksum of a file that has just been read; 0 when it has gone. */
+>>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
 static int64_t checksum(const char *path)
 {
-    enum { MOST = INT_MAX };
     struct crc32 crc;
-    char *text = NULL, *why = file_read(path, MOST, &text);
+    uint32_t sum = 0;
+    char bytes[16384];
+    FILE *file = fopen(path, "rb");
     crc32_init(&crc);
-    const int64_t sum = why == NULL ? (int64_t)crc32_of(&crc, text, strlen(text)) : 0;
-    free(text);
-    free(why);
-    return sum;
+    for (size_t n; file != NULL && (n = fread(bytes, 1, sizeof bytes, file)) > 0;)
+        sum = crc32_more(&crc, sum, bytes, n);
+    if (file != NULL)
+        fclose(file);
+    return (int64_t)sum;
 }
 
 static void read_surfaces(struct job *job, struct mistakes *mistakes)
@@ -188,6 +202,7 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
     const int *grid = job->decomposition.fixed;
     int64_t n_spheres = 0;
     double speed = 0.0; /* at the start [m/s] */
+<<<<<<< HEAD
     for (int g = 0; g < job->n_spheres; g++) {
         struct packing packing;
         char *why = NULL;
@@ -197,13 +212,21 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
             continue;
         }
         const struct group_summary summary = summarise(job, &packing);
+=======
+    struct packings packings = {0, NULL};
+    struct bodies bodies;
+    bodies_build(&bodies, job);
+    packings_open(&packings, job, &bodies, sphere_file_read, mistakes);
+    for (int g = 0; g < packings.n; g++) {
+        const struct packing *packing = &packings.groups[g];
+        const struct group_summary summary = summarise(job, packing);
+>>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
         extent_add(&scene, summary.extent.low, 0.0);
         extent_add(&scene, summary.extent.high, 0.0);
-        n_spheres += packing.n;
+        n_spheres += packing->n;
         speed = summary.speed > speed ? summary.speed : speed;
-        if (packing.rows != NULL)
+        if (job->spheres[g].file != NULL)
             job->spheres[g].sum = checksum(job->spheres[g].file);
-        packing_close(&packing);
     }
     if (n_spheres > INT64_C(2000000000))
         mistakes_add(mistakes, job->path, 0, 0, "%lld spheres; at most 2e9 are expected",
@@ -218,6 +241,7 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
             "decomposition.grid is %d x %d x %d on %d ranks; a product equal to the ranks is "
             "expected",
             grid[0], grid[1], grid[2], n_ranks);
+<<<<<<< HEAD
     read_surfaces(job, mistakes);
     if (mistakes->n > 0)
         return false;
@@ -233,6 +257,15 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
     }
     if (job->time.step == 0.0)
         choose_times(job, foresee_speed(job, &bodies, speed));
+=======
+    if (mistakes->n == 0) {
+        add_bodies(&bodies, &scene);
+        choose_domain(job, &scene);
+        if (job->time.step == 0.0)
+            choose_times(job, &packings, foresee_speed(job, &bodies, speed));
+    }
+    packings_close(&packings);
+>>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
     bodies_clear(&bodies);
     return mistakes->n == 0;
 }
@@ -298,17 +331,18 @@ static void print_limits(const struct job *job, const struct limits *limits)
                limits_scatter(limits->shortest.duration / step));
 }
 
-static void print_group(const struct job *job, int g, const struct group_summary *s,
-                        const struct materials *materials, double speed)
+static void print_group(const struct job *job, const struct packing *packing,
+                        const struct group_summary *s, const struct materials *materials,
+                        double speed)
 {
-    const struct job_spheres *group = &job->spheres[g];
+    const struct job_spheres *group = packing->group;
     struct limits limits = limits_nothing(speed);
     report_say("spheres   %s: %lld of %s, radius %.4g .. %.4g m, mass %.4g kg", group->name,
                (long long)s->n,
                s->material >= 0 ? job->materials[s->material].name : "several materials",
                s->radius_least, s->radius_most, s->mass);
     print_extent("         ", &s->extent);
-    add_limits(&limits, job, materials, g);
+    add_limits(&limits, job, materials, packing);
     print_limits(job, &limits);
     warn_of_limits(job, group->name, &limits);
     if (speed * job->time.step > job->watch.motion * s->radius_least)
@@ -350,14 +384,16 @@ static int64_t print_groups(const struct job *job, const struct bodies *bodies,
 {
     struct group_summary *groups = array_allocate((size_t)job->n_spheres, sizeof *groups);
     struct materials materials;
+    struct packings packings;
+    struct mistakes mistakes;
     double speed = 0.0;
     int64_t n = 0;
+    mistakes_init(&mistakes);
+    CHECK(packings_open(&packings, job, bodies, sphere_file_read, &mistakes),
+          "a packing was there and has gone: %s", mistakes.list[0].text);
+    mistakes_clear(&mistakes);
     for (int g = 0; g < job->n_spheres; g++) {
-        struct packing packing;
-        char *why = NULL;
-        CHECK(packing_open(&packing, job, g, &why), "%s", why);
-        groups[g] = summarise(job, &packing);
-        packing_close(&packing);
+        groups[g] = summarise(job, &packings.groups[g]);
         speed = groups[g].speed > speed ? groups[g].speed : speed;
         extent_add(scene, groups[g].extent.low, 0.0);
         extent_add(scene, groups[g].extent.high, 0.0);
@@ -370,10 +406,15 @@ static int64_t print_groups(const struct job *job, const struct bodies *bodies,
     materials_build(&materials, job);
     speed = foresee_speed(job, bodies, speed);
     for (int g = 0; g < job->n_spheres; g++)
+<<<<<<< HEAD
         print_group(job, g, &groups[g], &materials, speed);
     for (int k = 0; k < job->n_insertions; k++)
         print_insertion(job, k, &materials, speed);
+=======
+        print_group(job, &packings.groups[g], &groups[g], &materials, speed);
+>>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
     materials_clear(&materials);
+    packings_close(&packings);
     free(groups);
     return n;
 }

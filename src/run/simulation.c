@@ -11,10 +11,11 @@
 #include "base/report.h"
 #include "job/job.h"
 #include "model/order.h"
-#include "model/packing.h"
+#include "model/packings.h"
 #include "run/redistribute.h"
 #include "store/checkpoint.h"
 #include "store/run_folder.h"
+#include "store/sphere_file.h"
 
 int64_t simulation_steps(double time, double step)
 {
@@ -130,10 +131,32 @@ void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
     sections_begin(&sim->sections, spheres, i);
 }
 
+/* The groups' spheres: of each, this rank begins with a slice. */
+static void add_groups(struct simulation *sim)
+{
+    const int64_t rank = sim->comm->rank, n_ranks = sim->comm->n_ranks;
+    struct packings packings;
+    struct mistakes mistakes;
+    mistakes_init(&mistakes);
+    CHECK(packings_open(&packings, sim->job, &sim->bodies, sphere_file_read, &mistakes),
+          "a packing was there and has gone: %s", mistakes.list[0].text);
+    mistakes_clear(&mistakes);
+    for (int g = 0; g < packings.n; g++) {
+        const int64_t n = packings.groups[g].n;
+        for (int64_t k = n * rank / n_ranks; k < n * (rank + 1) / n_ranks; k++) {
+            const struct packing_sphere sphere = packing_get(&packings.groups[g], k);
+            add_sphere(sim, sim->next_id + k, g, &sphere);
+        }
+        sim->next_id += n;
+    }
+    packings_close(&packings);
+}
+
 void simulation_create(struct simulation *sim, const struct comm *comm, const struct job *job,
                        enum pair_kernel_isa isa)
 {
     begin(sim, comm, job);
+<<<<<<< HEAD
     for (int g = 0; g < job->n_spheres; g++) {
         struct packing packing;
         char *why = NULL;
@@ -149,6 +172,9 @@ void simulation_create(struct simulation *sim, const struct comm *comm, const st
         sim->next_id += packing.n;
         packing_close(&packing);
     }
+=======
+    add_groups(sim);
+>>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
     sim->spheres.n_all = sim->spheres.n_owned;
     order_renew(&sim->spheres, comm);
     finish(sim, isa);

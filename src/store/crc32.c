@@ -22,8 +22,13 @@ void crc32_init(struct crc32 *crc)
 
 uint32_t crc32_of(const struct crc32 *crc, const void *bytes, size_t n)
 {
+    return crc32_more(crc, 0, bytes, n);
+}
+
+uint32_t crc32_more(const struct crc32 *crc, uint32_t sum, const void *bytes, size_t n)
+{
     const unsigned char *p = bytes;
-    uint32_t state = 0xFFFFFFFFu;
+    uint32_t state = ~sum;
     for (; n >= 8; n -= 8, p += 8) {
         const uint32_t low = state ^ ((uint32_t)p[0] | (uint32_t)p[1] << 8 |
                                       (uint32_t)p[2] << 16 | (uint32_t)p[3] << 24);

@@ -13,5 +13,7 @@ struct crc32 {
 
 void crc32_init(struct crc32 *crc);
 uint32_t crc32_of(const struct crc32 *crc, const void *bytes, size_t n);
+/* That of what was summed up, followed by these bytes. */
+uint32_t crc32_more(const struct crc32 *crc, uint32_t sum, const void *bytes, size_t n);
 
 #endif

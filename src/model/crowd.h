@@ -1,0 +1,37 @@
+/*
+ * Spheres that stand in the way of others: is there room for one more?  For scenes that are
+ * built sphere by sphere.  Local, all of it.
+ */
+#ifndef TREMIE_MODEL_CROWD_H
+#define TREMIE_MODEL_CROWD_H
+
+#include <stdbool.h>
+
+#include "base/vec3.h"
+
+enum { CROWD_LEVELS = 16 };
+
+struct crowd_sphere {
+    struct vec3 position; /* [m] */
+    double radius;        /* [m] */
+    int next;             /* in the same bucket; -1: none */
+    int level;
+};
+
+struct crowd {
+    double edges[CROWD_LEVELS]; /* of a level's cells [m] */
+    bool used[CROWD_LEVELS];
+    int n, capacity;
+    struct crowd_sphere *spheres;
+    int n_buckets; /* a power of 2 */
+    int *buckets;  /* the last sphere entered; -1: none */
+};
+
+/* `radius` is the greatest there will be [m]. */
+void crowd_init(struct crowd *crowd, double radius);
+void crowd_clear(struct crowd *crowd);
+void crowd_add(struct crowd *crowd, struct vec3 x, double radius);
+/* Is every sphere's surface at least `gap` [m] from that of a sphere here? */
+bool crowd_has_room(const struct crowd *crowd, struct vec3 x, double radius, double gap);
+
+#endif
