@@ -194,8 +194,8 @@ static const struct schema_key sizes_keys[] = {
 #define SIZES_AT(type, member)                                                                 \
     .inside = sizes_keys, .offset = offsetof(type, member), GIVEN(type, member.given)
 
-#define LATTICES (KIND(JOB_PACKING_LATTICE) | KIND(JOB_PACKING_HEXAGONAL))
-#define FILES    (KIND(JOB_PACKING_CSV) | KIND(JOB_PACKING_HDF5))
+#define LATTICES     (KIND(JOB_PACKING_LATTICE) | KIND(JOB_PACKING_HEXAGONAL))
+#define PACKED_FILES (KIND(JOB_PACKING_CSV) | KIND(JOB_PACKING_HDF5))
 
 static const struct schema_key packing_keys[] = {
     {"kind", SCHEMA_CHOICE, "how the group is placed at the start", .required = true,
@@ -239,11 +239,12 @@ static const struct schema_key packing_keys[] = {
      "and, if wanted, radius_m, material, vx_m_s, vy_m_s, vz_m_s. HDF5, like a checkpoint: "
      "/spheres/position (n x 3) and, if wanted, radius (n), velocity, angular_velocity (n x "
      "3)",
-     .required = true, .kinds = FILES, AT(struct job_spheres, file)},
+     .required = true, .kinds = PACKED_FILES, AT(struct job_spheres, file)},
     {"sum", SCHEMA_COUNT,
      "checksum of the file (CRC-32), filled in by the program: a run is not resumed with "
      "another file's spheres",
-     .standard = "0", BETWEEN(0.0, 4294967295.0), .kinds = FILES, AT(struct job_spheres, sum)},
+     .standard = "0", BETWEEN(0.0, 4294967295.0), .kinds = PACKED_FILES,
+     AT(struct job_spheres, sum)},
     END};
 
 static const struct schema_key spheres_keys[] = {

@@ -12,23 +12,16 @@
 #include "job/job.h"
 #include "model/body.h"
 #include "model/material.h"
-<<<<<<< HEAD
-#include "model/packing.h"
-#include "run/inflow.h"
-=======
 #include "model/packings.h"
->>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
+#include "run/inflow.h"
 #include "run/limits.h"
 #include "run/simulation.h"
 #include "run/step.h"
 #include "run/survey.h"
 #include "store/crc32.h"
 #include "store/file.h"
-<<<<<<< HEAD
-#include "store/surface_file.h"
-=======
 #include "store/sphere_file.h"
->>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
+#include "store/surface_file.h"
 
 enum { ALL_PAIRS_MOST = 20000 }; /* 2e8 pairs */
 
@@ -138,13 +131,9 @@ static void choose_times(struct job *job, const struct packings *packings, doubl
     struct materials materials;
     materials_build(&materials, job);
     for (int g = 0; g < job->n_spheres; g++)
-<<<<<<< HEAD
-        add_limits(&limits, job, &materials, g);
+        add_limits(&limits, job, &materials, &packings->groups[g]);
     for (int k = 0; k < job->n_insertions; k++)
         inflow_add_limits(&limits, job, &materials, k);
-=======
-        add_limits(&limits, job, &materials, &packings->groups[g]);
->>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
     materials_clear(&materials);
     if (limits.rayleigh < 1e299)
         job->time.step = limits_step(&limits, job->time.safety);
@@ -156,8 +145,7 @@ static void choose_times(struct job *job, const struct packings *packings, doubl
     }
 }
 
-<<<<<<< HEAD
-/* A packing or a surface says "file:line:column: what"; the place goes where places go. */
+/* A surface says "file:line:column: what"; the place goes where places go. */
 static void add_file_mistake(struct mistakes *mistakes, const char *file, const char *why)
 {
     int line = 0, column = 0, begin = 0;
@@ -167,10 +155,7 @@ static void add_file_mistake(struct mistakes *mistakes, const char *file, const 
     mistakes_add(mistakes, file, line, column, "%s", rest + begin);
 }
 
-/* Checksum of a CSV file that has just been read; 0 when it has gone. */
-=======
 /* Checksum of a file that has just been read; 0 when it has gone. */
->>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
 static int64_t checksum(const char *path)
 {
     struct crc32 crc;
@@ -202,25 +187,16 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
     const int *grid = job->decomposition.fixed;
     int64_t n_spheres = 0;
     double speed = 0.0; /* at the start [m/s] */
-<<<<<<< HEAD
-    for (int g = 0; g < job->n_spheres; g++) {
-        struct packing packing;
-        char *why = NULL;
-        if (!packing_open(&packing, job, g, &why)) {
-            add_file_mistake(mistakes, job->spheres[g].file, why);
-            free(why);
-            continue;
-        }
-        const struct group_summary summary = summarise(job, &packing);
-=======
     struct packings packings = {0, NULL};
-    struct bodies bodies;
-    bodies_build(&bodies, job);
-    packings_open(&packings, job, &bodies, sphere_file_read, mistakes);
+    struct bodies bodies = {.n = 0};
+    read_surfaces(job, mistakes);
+    if (mistakes->n == 0) {
+        bodies_build(&bodies, job);
+        packings_open(&packings, job, &bodies, sphere_file_read, mistakes);
+    }
     for (int g = 0; g < packings.n; g++) {
         const struct packing *packing = &packings.groups[g];
         const struct group_summary summary = summarise(job, packing);
->>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
         extent_add(&scene, summary.extent.low, 0.0);
         extent_add(&scene, summary.extent.high, 0.0);
         n_spheres += packing->n;
@@ -241,31 +217,19 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
             "decomposition.grid is %d x %d x %d on %d ranks; a product equal to the ranks is "
             "expected",
             grid[0], grid[1], grid[2], n_ranks);
-<<<<<<< HEAD
-    read_surfaces(job, mistakes);
-    if (mistakes->n > 0)
-        return false;
-    struct bodies bodies;
-    bodies_build(&bodies, job);
-    survey_check(job, &bodies, mistakes);
-    add_bodies(&bodies, &scene);
-    inflow_check(job, &bodies, &scene.low, &scene.high, mistakes);
-    choose_domain(job, &scene);
-    for (int k = 0; k < job->n_insertions; k++) {
-        const double incoming = inflow_of(job, k).speed;
-        speed = incoming > speed ? incoming : speed;
-    }
-    if (job->time.step == 0.0)
-        choose_times(job, foresee_speed(job, &bodies, speed));
-=======
     if (mistakes->n == 0) {
+        survey_check(job, &bodies, mistakes);
         add_bodies(&bodies, &scene);
+        inflow_check(job, &bodies, &scene.low, &scene.high, mistakes);
         choose_domain(job, &scene);
+        for (int k = 0; k < job->n_insertions; k++) {
+            const double incoming = inflow_of(job, k).speed;
+            speed = incoming > speed ? incoming : speed;
+        }
         if (job->time.step == 0.0)
             choose_times(job, &packings, foresee_speed(job, &bodies, speed));
     }
     packings_close(&packings);
->>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
     bodies_clear(&bodies);
     return mistakes->n == 0;
 }
@@ -406,13 +370,9 @@ static int64_t print_groups(const struct job *job, const struct bodies *bodies,
     materials_build(&materials, job);
     speed = foresee_speed(job, bodies, speed);
     for (int g = 0; g < job->n_spheres; g++)
-<<<<<<< HEAD
-        print_group(job, g, &groups[g], &materials, speed);
+        print_group(job, &packings.groups[g], &groups[g], &materials, speed);
     for (int k = 0; k < job->n_insertions; k++)
         print_insertion(job, k, &materials, speed);
-=======
-        print_group(job, &packings.groups[g], &groups[g], &materials, speed);
->>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
     materials_clear(&materials);
     packings_close(&packings);
     free(groups);

@@ -145,7 +145,9 @@ static void add_groups(struct simulation *sim)
         const int64_t n = packings.groups[g].n;
         for (int64_t k = n * rank / n_ranks; k < n * (rank + 1) / n_ranks; k++) {
             const struct packing_sphere sphere = packing_get(&packings.groups[g], k);
-            add_sphere(sim, sim->next_id + k, g, &sphere);
+            const int i = sim->spheres.n_owned++;
+            spheres_reserve(&sim->spheres, i + 1);
+            simulation_set_sphere(sim, i, sim->next_id + k, g, &sphere);
         }
         sim->next_id += n;
     }
@@ -156,25 +158,7 @@ void simulation_create(struct simulation *sim, const struct comm *comm, const st
                        enum pair_kernel_isa isa)
 {
     begin(sim, comm, job);
-<<<<<<< HEAD
-    for (int g = 0; g < job->n_spheres; g++) {
-        struct packing packing;
-        char *why = NULL;
-        CHECK(packing_open(&packing, job, g, &why), "%s", why);
-        const int64_t first = packing.n * comm->rank / comm->n_ranks;
-        const int64_t end = packing.n * (comm->rank + 1) / comm->n_ranks;
-        for (int64_t k = first; k < end; k++) {
-            const struct packing_sphere sphere = packing_get(&packing, k);
-            const int i = sim->spheres.n_owned++;
-            spheres_reserve(&sim->spheres, i + 1);
-            simulation_set_sphere(sim, i, sim->next_id + k, g, &sphere);
-        }
-        sim->next_id += packing.n;
-        packing_close(&packing);
-    }
-=======
     add_groups(sim);
->>>>>>> 0f5aab1 (Random packings in any region, hexagonal close packing, spheres from HDF5)
     sim->spheres.n_all = sim->spheres.n_owned;
     order_renew(&sim->spheres, comm);
     finish(sim, isa);
