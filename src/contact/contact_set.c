@@ -131,16 +131,80 @@ static double seen_from(bool other_side, int lane, double h)
     return other_side && contact_lane_turns(lane) ? -h : h;
 }
 
-static void place_history(struct contact_set *contacts, const struct candidates *candidates,
+/* Writes the history where the two are listed; false where they are not. */
+static bool place_between(struct contact_set *contacts, const struct candidates *candidates,
                           int first, int second, const double history[CONTACT_LANES])
 {
     const bool turned = candidates->place[first] > candidates->place[second];
     const int entry =
         turned ? find_entry(contacts, second, first) : find_entry(contacts, first, second);
-    CHECK(entry >= 0, "a touching contact is not in the list");
+    if (entry < 0)
+        return false;
     for (int l = 0; l < CONTACT_LANES; l++)
         if (has_lane(contacts, l))
             contacts->now.history[l][entry] = seen_from(turned, l, history[l]);
+    return true;
+}
+
+/* Copies of a sphere here, itself and images, stand together in canonical order: its lowest
+ * and one past its highest place. */
+static void find_copies(const struct candidates *candidates, const struct spheres *spheres,
+                        int i, int places[2])
+{
+    places[0] = candidates->place[i];
+    places[1] = places[0] + 1;
+    while (places[0] > 0 && spheres->id[candidates->at[places[0] - 1]] == spheres->id[i])
+        places[0]--;
+    while (places[1] < spheres->n_all &&
+           spheres->id[candidates->at[places[1]]] == spheres->id[i])
+        places[1]++;
+}
+
+static double distance2_of(const struct spheres *spheres, int i, int j)
+{
+    const double *a = sphere_position(spheres, i), *b = sphere_position(spheres, j);
+    const double dx = b[0] - a[0], dy = b[1] - a[1], dz = b[2] - a[2];
+    return dx * dx + dy * dy + dz * dz;
+}
+
+/* Writes the history between each owned copy of `first` and the copy of `second` that is
+ * nearest to it: periods are so long that no other touches. */
+static bool place_copies(struct contact_set *contacts, const struct candidates *candidates,
+                         const struct spheres *spheres, int first, int second, bool turned,
+                         const double history[CONTACT_LANES])
+{
+    int a[2], b[2];
+    bool placed = false;
+    find_copies(candidates, spheres, first, a);
+    find_copies(candidates, spheres, second, b);
+    for (int p = a[0]; p < a[1]; p++) {
+        const int i = candidates->at[p];
+        int nearest = candidates->at[b[0]];
+        for (int q = b[0] + 1; q < b[1]; q++) {
+            const int j = candidates->at[q];
+            nearest =
+                distance2_of(spheres, i, j) < distance2_of(spheres, i, nearest) ? j : nearest;
+        }
+        if (i < spheres->n_owned && place_between(contacts, candidates, turned ? nearest : i,
+                                                  turned ? i : nearest, history))
+            placed = true;
+    }
+    return placed;
+}
+
+static void place_history(struct contact_set *contacts, const struct candidates *candidates,
+                          const struct spheres *spheres, int first, int second,
+                          const double history[CONTACT_LANES])
+{
+    bool placed;
+    if (spheres->periodic.any) {
+        placed = place_copies(contacts, candidates, spheres, first, second, false, history);
+        placed =
+            place_copies(contacts, candidates, spheres, second, first, true, history) || placed;
+    } else {
+        placed = place_between(contacts, candidates, first, second, history);
+    }
+    CHECK(placed, "a touching contact is not in the list");
 }
 
 static void carry_history(struct contact_set *contacts, const struct candidates *candidates,
@@ -159,7 +223,7 @@ static void carry_history(struct contact_set *contacts, const struct candidates 
         double history[CONTACT_LANES];
         for (int l = 0; l < CONTACT_LANES; l++)
             history[l] = has_lane(contacts, l) ? before->history[l][k] : 0.0;
-        place_history(contacts, candidates, first, second, history);
+        place_history(contacts, candidates, spheres, first, second, history);
     }
 }
 
@@ -217,7 +281,8 @@ int contact_set_records(const struct contact_set *contacts, const struct spheres
 }
 
 void contact_set_restore(struct contact_set *contacts, const struct candidates *candidates,
-                         const struct contact_record *record, int first, int second)
+                         const struct spheres *spheres, const struct contact_record *record,
+                         int first, int second)
 {
-    place_history(contacts, candidates, first, second, record->history);
+    place_history(contacts, candidates, spheres, first, second, record->history);
 }

@@ -14,6 +14,10 @@
  *   11   twisting spring force along the normal [N]
  *   12   1 where the contact slid in the last step
  * A contact that does not touch holds +0.0 in all lanes.
+ *
+ * Where space is periodic, a rank may hold images of its own spheres.  A contact over the
+ * boundary then stands in the list twice, between either sphere and the other's image, with the
+ * same history; each entry acts on its owned sphere, and its record is made once.
  */
 #ifndef TREMIE_CONTACT_CONTACT_SET_H
 #define TREMIE_CONTACT_CONTACT_SET_H
@@ -100,9 +104,10 @@ int contact_set_records(const struct contact_set *contacts, const struct spheres
                         const unsigned char *chosen, struct contact_record **records,
                         int *capacity);
 
-/* Puts a record's history where its pair (storage indices of first_id and second_id) is listed.
- * A pair that is not listed is a mistake of ours.  Local. */
+/* Puts a record's history where its pair (storage indices of first_id and second_id, of any
+ * copies of them) is listed.  A pair that is not listed is a mistake of ours.  Local. */
 void contact_set_restore(struct contact_set *contacts, const struct candidates *candidates,
-                         const struct contact_record *record, int first, int second);
+                         const struct spheres *spheres, const struct contact_record *record,
+                         int first, int second);
 
 #endif

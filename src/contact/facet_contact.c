@@ -41,7 +41,7 @@ struct quick_load {
 struct facet_work {
     struct facet_tree *trees; /* one a body */
     bool has_trees;
-    struct facet_tree_found found;
+    struct facet_tree_found found, across;
     int next_capacity;
     struct facet_contact *next; /* the list that is being made */
     struct facet_local local;
@@ -86,6 +86,7 @@ void facet_contacts_clear(struct facet_contacts *facets)
         facet_tree_clear(&work->trees[b]);
     free(work->trees);
     free(work->found.features);
+    free(work->across.features);
     free(work->next);
     free(work->loads);
     facet_local_clear(&work->local);
@@ -185,6 +186,58 @@ static void list_contact(struct facet_contacts *facets, struct facet_contact con
     *n = append(facets->work, *n, &contact);
 }
 
+static int compare_features(const void *a, const void *b)
+{
+    int p, q;
+    memcpy(&p, a, sizeof p);
+    memcpy(&q, b, sizeof q);
+    return (p > q) - (p < q);
+}
+
+/* Adds what sphere i comes near to on the other side of a periodic boundary: bodies are not
+ * repeated, so each image that it may become before the next search looks for itself. */
+static void find_across(struct facet_work *work, int b, const struct mesh *mesh,
+                        const struct spheres *spheres, int i, double reach)
+{
+    double shifts[PERIODIC_IMAGES][3];
+    const int n_shifts = periodic_shifts(&spheres->periodic, shifts);
+    const double *x = sphere_position(spheres, i), allowance = spheres->allowance[i];
+    struct facet_tree_found *found = &work->found, *across = &work->across;
+    for (int s = 1; s < n_shifts; s++) {
+        double image[3];
+        bool may_be = true;
+        for (int k = 0; k < 3; k++) {
+            image[k] = x[k] + shifts[s][k];
+            may_be = may_be && (shifts[s][k] == 0.0 ||
+                                (image[k] >= spheres->periodic.low[k] - allowance &&
+                                 image[k] <= spheres->periodic.high[k] + allowance));
+        }
+        if (!may_be)
+            continue;
+        facet_tree_query(&work->trees[b], mesh, vec3_of(image), reach, across);
+        for (int k = 0; k < across->n; k++) {
+            ARRAY_GROW(found->features, found->n + 1, found->capacity);
+            found->features[found->n++] = across->features[k];
+        }
+    }
+    qsort(found->features, (size_t)found->n, sizeof *found->features, compare_features);
+    int n = 0;
+    for (int k = 0; k < found->n; k++)
+        if (n == 0 || found->features[n - 1] != found->features[k])
+            found->features[n++] = found->features[k];
+    found->n = n;
+}
+
+static void find_features(struct facet_work *work, int b, const struct mesh *mesh,
+                          const struct spheres *spheres, int i, double body_allowance)
+{
+    const double reach = sphere_radius(spheres, i) + spheres->allowance[i] + body_allowance;
+    facet_tree_query(&work->trees[b], mesh, vec3_of(sphere_position(spheres, i)), reach,
+                     &work->found);
+    if (spheres->periodic.any)
+        find_across(work, b, mesh, spheres, i, reach);
+}
+
 void facet_contacts_search(struct facet_contacts *facets, const struct spheres *spheres,
                            const struct bodies *bodies, const double *body_allowance,
                            bool all_pairs)
@@ -195,15 +248,12 @@ void facet_contacts_search(struct facet_contacts *facets, const struct spheres *
     prepare_trees(work, bodies);
     int n = 0, old = 0;
     for (int i = 0; i < spheres->n_owned; i++) {
-        const struct vec3 centre = vec3_of(sphere_position(spheres, i));
-        const double reach = sphere_radius(spheres, i) + spheres->allowance[i];
         for (int b = 0; b < bodies->n; b++) {
             const struct mesh *mesh = &bodies->list[b].mesh;
             if (all_pairs)
                 find_all_features(found, mesh);
             else
-                facet_tree_query(&work->trees[b], mesh, centre, reach + body_allowance[b],
-                                 found);
+                find_features(work, b, mesh, spheres, i, body_allowance[b]);
             for (int k = 0; k < found->n; k++)
                 list_contact(facets,
                              (struct facet_contact){
@@ -430,9 +480,10 @@ static void gather_group(const struct step *step, int begin, int end)
     struct facet_contact *group = &step->facets->list[begin];
     struct facet_local *local = &step->facets->work->local;
     const struct mesh *mesh = &step->bodies->list[group->body].mesh;
-    const struct vec3 centre = vec3_of(sphere_position(step->spheres, group->sphere));
+    const struct vec3 centre = sphere_place(step->spheres, group->sphere);
     const double radius = sphere_radius(step->spheres, group->sphere);
-    facet_local_search(local, group, end - begin, mesh, centre, radius);
+    facet_local_search(local, group, end - begin, mesh, &step->spheres->periodic, centre,
+                       radius);
     for (int t = 0; t < local->n_touches; t++) {
         const struct facet_local_touch *touch = &local->touches[t];
         if (facet_local_stands(local, t))
@@ -452,7 +503,7 @@ static void gather_one(const struct step *step, int entry)
 {
     const struct facet_contact *contact = &step->facets->list[entry];
     const struct mesh *mesh = &step->bodies->list[contact->body].mesh;
-    const struct vec3 centre = vec3_of(sphere_position(step->spheres, contact->sphere));
+    const struct vec3 centre = sphere_place(step->spheres, contact->sphere);
     const double radius = sphere_radius(step->spheres, contact->sphere);
     struct contact_geometry at;
     if (contact_geometry_touches(mesh, contact->feature, centre, radius, &at)) {

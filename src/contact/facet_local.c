@@ -245,14 +245,33 @@ static void move_history(double *from, double *to, struct vec3 normal)
     turn_force(to + CONTACT_ROLLING_LANE, normal);
 }
 
+/* Where the feature was touched last, as seen from the centre: from that image of it which is
+ * nearest, as the sphere may have come in again on the other side. */
+static struct contact_geometry closest_image(const struct mesh *mesh, int feature,
+                                             const struct periodic *periodic,
+                                             struct vec3 centre)
+{
+    struct contact_geometry nearest = contact_geometry_closest(mesh, feature, centre);
+    double shifts[PERIODIC_IMAGES][3];
+    const int n = periodic->any ? periodic_shifts(periodic, shifts) : 0;
+    for (int s = 1; s < n; s++) {
+        const struct vec3 shift = {shifts[s][0], shifts[s][1], shifts[s][2]};
+        struct contact_geometry at =
+            contact_geometry_closest(mesh, feature, vec3_add(centre, shift));
+        at.point = vec3_sub(at.point, shift);
+        nearest = at.distance < nearest.distance ? at : nearest;
+    }
+    return nearest;
+}
+
 static void hand_over(struct facet_local *local, struct facet_contact *group,
-                      const struct mesh *mesh, struct vec3 centre, double radius)
+                      const struct mesh *mesh, const struct periodic *periodic,
+                      struct vec3 centre, double radius)
 {
     int n_left = 0;
     for (int e = 0; e < local->n_ended; e++) {
         struct facet_contact *old = &group[local->ended[e]];
-        const struct contact_geometry was =
-            contact_geometry_closest(mesh, old->feature, centre);
+        const struct contact_geometry was = closest_image(mesh, old->feature, periodic, centre);
         const double patch = old->history[CONTACT_RADIUS_LANE];
         const struct facet_local_touch *heir =
             heir_of(local, group, &was, patch * patch / radius, radius);
@@ -265,7 +284,8 @@ static void hand_over(struct facet_local *local, struct facet_contact *group,
 }
 
 void facet_local_search(struct facet_local *local, struct facet_contact *group, int n,
-                        const struct mesh *mesh, struct vec3 centre, double radius)
+                        const struct mesh *mesh, const struct periodic *periodic,
+                        struct vec3 centre, double radius)
 {
     reserve(local, n);
     find_touches(local, group, n, mesh, centre, radius);
@@ -276,5 +296,5 @@ void facet_local_search(struct facet_local *local, struct facet_contact *group, 
         local->touches[0].stands_in = 0;
     }
     if (local->n_ended > 0 && local->n_touches > 0)
-        hand_over(local, group, mesh, centre, radius);
+        hand_over(local, group, mesh, periodic, centre, radius);
 }

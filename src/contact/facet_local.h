@@ -20,6 +20,7 @@
 
 #include "contact/facet_contact.h"
 #include "model/mesh.h"
+#include "model/periodic.h"
 #include "physics/contact_geometry.h"
 
 /* A feature that touches. */
@@ -46,9 +47,11 @@ static inline bool facet_local_stands(const struct facet_local *local, int t)
 }
 
 void facet_local_clear(struct facet_local *local);
-/* Searches a group: the n entries of a sphere with one body. Their history is handed over,
- * nothing else is changed. Local. */
+/* Searches a group: the n entries of a sphere with one body. Their history is handed over, also
+ * to where the sphere comes in again past a periodic boundary; nothing else is changed.
+ * Local. */
 void facet_local_search(struct facet_local *local, struct facet_contact *group, int n,
-                        const struct mesh *mesh, struct vec3 centre, double radius);
+                        const struct mesh *mesh, const struct periodic *periodic,
+                        struct vec3 centre, double radius);
 
 #endif

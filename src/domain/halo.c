@@ -35,6 +35,7 @@ void halo_clear(struct halo *halo)
     for (int p = 0; p < halo->mail.n_ranks; p++) {
         free(halo->peers[p].send);
         free(halo->peers[p].receive);
+        free(halo->peers[p].image);
         free(halo->peers[p].out);
         free(halo->peers[p].in);
     }
@@ -120,15 +121,74 @@ static bool ranks_meet(const struct rank_boxes *a, const struct rank_boxes *b)
     return false;
 }
 
-static bool is_needed(const struct spheres *spheres, int i, const struct rank_boxes *there)
+static struct rank_boxes shifted(const struct rank_boxes *boxes, const double shift[3])
 {
-    const double reach = reach_of(spheres, i), *x = sphere_position(spheres, i);
+    struct rank_boxes there = *boxes;
+    for (int l = 0; l < LEVELS; l++) {
+        for (int k = 0; k < 3; k++) {
+            there.level[l].low[k] += shift[k];
+            there.level[l].high[k] += shift[k];
+        }
+    }
+    return there;
+}
+
+/* One box around all levels' centres and reaches. */
+static struct level_box around(const struct rank_boxes *boxes)
+{
+    struct level_box all = {{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}, 0.0};
+    for (int l = 0; l < LEVELS; l++) {
+        const struct level_box *box = &boxes->level[l];
+        for (int k = 0; k < 3; k++) {
+            all.low[k] = box->low[k] < all.low[k] ? box->low[k] : all.low[k];
+            all.high[k] = box->high[k] > all.high[k] ? box->high[k] : all.high[k];
+        }
+        all.reach = box->reach > all.reach ? box->reach : all.reach;
+    }
+    return all;
+}
+
+static bool is_needed(const double *x, double reach, const struct rank_boxes *there)
+{
     for (int l = 0; l < LEVELS; l++) {
         const struct level_box *box = &there->level[l];
         if (box->low[0] <= box->high[0] && meets(box, x, reach))
             return true;
     }
     return false;
+}
+
+static void add_send(struct halo_peer *peer, int i, int shift)
+{
+    ARRAY_GROW(peer->send, peer->n_send + 1, peer->send_capacity);
+    ARRAY_GROW(peer->image, peer->n_send + 1, peer->image_capacity);
+    peer->image[peer->n_send] = (unsigned char)shift;
+    peer->send[peer->n_send++] = i;
+}
+
+/* Spheres that a rank needs as they are. */
+static void choose_plain(struct halo_peer *peer, const struct spheres *spheres,
+                         const struct rank_boxes *there)
+{
+    for (int i = 0; i < spheres->n_owned; i++) {
+        if (is_needed(sphere_position(spheres, i), reach_of(spheres, i), there))
+            add_send(peer, i, 0);
+    }
+    peer->n_plain = peer->n_send;
+}
+
+/* Images of spheres that a rank needs.  Most spheres are far from the boundary: one look says
+ * so. */
+static void choose_images(struct halo_peer *peer, const struct spheres *spheres,
+                          const struct rank_boxes *there, const double shift[3], int code)
+{
+    const struct level_box near = around(there);
+    for (int i = 0; i < spheres->n_owned; i++) {
+        const double *x = sphere_position(spheres, i), reach = reach_of(spheres, i);
+        const double image[3] = {x[0] + shift[0], x[1] + shift[1], x[2] + shift[2]};
+        if (meets(&near, image, reach) && is_needed(image, reach, there))
+            add_send(peer, i, code);
+    }
 }
 
 static void choose_sends(struct halo *halo, const struct comm *comm,
@@ -138,19 +198,40 @@ static void choose_sends(struct halo *halo, const struct comm *comm,
     struct rank_boxes *all = halo->all_boxes;
     comm_gather_all(comm, &own, all, sizeof own);
     halo->n_peers = 0;
+    halo->n_shifts = periodic_shifts(&spheres->periodic, halo->shifts);
     for (int q = 0; q < comm->n_ranks; q++) {
-        if (q == comm->rank || !ranks_meet(&own, &all[q]))
-            continue;
-        struct halo_peer *peer = &halo->peers[halo->n_peers++];
+        struct halo_peer *peer = &halo->peers[halo->n_peers];
+        bool is_peer = false;
         peer->rank = q;
-        peer->n_send = 0;
-        for (int i = 0; i < spheres->n_owned; i++) {
-            if (!is_needed(spheres, i, &all[q]))
-                continue;
-            ARRAY_GROW(peer->send, peer->n_send + 1, peer->send_capacity);
-            peer->send[peer->n_send++] = i;
+        peer->n_send = peer->n_plain = 0;
+        if (q != comm->rank && ranks_meet(&own, &all[q])) {
+            choose_plain(peer, spheres, &all[q]);
+            is_peer = true;
         }
+        for (int s = 1; s < halo->n_shifts; s++) {
+            const struct rank_boxes image = shifted(&own, halo->shifts[s]);
+            if (!ranks_meet(&image, &all[q]))
+                continue;
+            choose_images(peer, spheres, &all[q], halo->shifts[s], s);
+            is_peer = true;
+        }
+        halo->n_peers += is_peer;
     }
+}
+
+/* A sphere's field as the peer is to see it: images lie elsewhere. */
+static void pack_field(struct halo *halo, const struct halo_peer *peer, int k, int f,
+                       const struct field_view *view)
+{
+    const void *value = field_at(view, peer->send[k]);
+    double place[3];
+    if (f == SPHERE_POSITION && k >= peer->n_plain) {
+        memcpy(place, value, sizeof place);
+        for (int c = 0; c < 3; c++)
+            place[c] += halo->shifts[peer->image[k]][c];
+        value = place;
+    }
+    comm_mail_pack(&halo->mail, peer->rank, value, field_size(&sphere_fields[f]));
 }
 
 static void send_ghosts(struct halo *halo, const struct comm *comm,
@@ -163,8 +244,7 @@ static void send_ghosts(struct halo *halo, const struct comm *comm,
             for (int f = 0; f < SPHERE_N_FIELDS; f++) {
                 const struct field_view view = sphere_view(spheres, f);
                 if (sphere_fields[f].use & FIELD_GHOST)
-                    comm_mail_pack(&halo->mail, peer->rank, field_at(&view, peer->send[k]),
-                                   field_size(&sphere_fields[f]));
+                    pack_field(halo, peer, k, f, &view);
             }
         }
     }
@@ -234,7 +314,13 @@ static void sort_ghosts(struct halo *halo, struct spheres *spheres)
 static void count_classes(struct halo *halo, const struct comm *comm, const struct boxes *boxes,
                           const struct spheres *spheres, double half_buffer)
 {
-    const double *low = boxes->low[comm->rank], *high = boxes->high[comm->rank];
+    const struct periodic *periodic = &spheres->periodic;
+    double low[3], high[3];
+    for (int k = 0; k < 3; k++) {
+        const double least = boxes->low[comm->rank][k], most = boxes->high[comm->rank][k];
+        low[k] = periodic->along[k] && periodic->low[k] > least ? periodic->low[k] : least;
+        high[k] = periodic->along[k] && periodic->high[k] < most ? periodic->high[k] : most;
+    }
     halo->n_internal = 0;
     for (int i = 0; i < spheres->n_owned; i++) {
         const double *x = sphere_position(spheres, i),
@@ -252,7 +338,7 @@ void halo_build(struct halo *halo, const struct comm *comm, const struct boxes *
 {
     spheres->n_all = spheres->n_owned;
     halo->n_peers = 0;
-    if (comm->n_ranks > 1) {
+    if (comm->n_ranks > 1 || spheres->periodic.any) {
         choose_sends(halo, comm, spheres);
         send_ghosts(halo, comm, spheres);
         receive_ghosts(halo, spheres);
@@ -270,7 +356,8 @@ void halo_build(struct halo *halo, const struct comm *comm, const struct boxes *
     }
 }
 
-static void pack_motion(struct halo_peer *peer, const struct spheres *spheres)
+static void pack_motion(const struct halo *halo, struct halo_peer *peer,
+                        const struct spheres *spheres)
 {
     for (int k = 0; k < peer->n_send; k++) {
         const double *motion = spheres->motion[peer->send[k]].lane;
@@ -279,14 +366,19 @@ static void pack_motion(struct halo_peer *peer, const struct spheres *spheres)
         memcpy(out + 3, motion + 4, 3 * sizeof *out);
         memcpy(out + 6, spheres->spin[peer->send[k]].lane + 4, 3 * sizeof *out);
     }
+    for (int k = peer->n_plain; k < peer->n_send; k++) {
+        for (int c = 0; c < 3; c++)
+            peer->out[MOTION * k + c] += halo->shifts[peer->image[k]][c];
+    }
 }
 
-static void unpack_motion(const struct halo_peer *peer, struct spheres *spheres)
+static void unpack_motion(const struct halo_peer *peer, const double *all,
+                          struct spheres *spheres)
 {
     for (int k = 0; k < peer->n_receive; k++) {
         double *motion = spheres->motion[peer->receive[k]].lane,
                *spin = spheres->spin[peer->receive[k]].lane;
-        const double *in = peer->in + MOTION * k, radius = motion[3];
+        const double *in = all + MOTION * k, radius = motion[3];
         memcpy(motion, in, 3 * sizeof *in);
         memcpy(motion + 4, in + 3, 3 * sizeof *in);
         for (int c = 0; c < 3; c++) {
@@ -301,18 +393,20 @@ void halo_refresh(struct halo *halo, const struct comm *comm, struct spheres *sp
     int n = 0;
     for (int p = 0; p < halo->n_peers; p++) {
         struct halo_peer *peer = &halo->peers[p];
-        if (peer->n_receive > 0)
+        if (peer->n_receive > 0 && peer->rank != comm->rank)
             COMM_CHECK(MPI_Irecv(peer->in, MOTION * peer->n_receive, MPI_DOUBLE, peer->rank, 2,
                                  comm->mpi, &halo->requests[n++]));
     }
     for (int p = 0; p < halo->n_peers; p++) {
         struct halo_peer *peer = &halo->peers[p];
-        pack_motion(peer, spheres);
-        if (peer->n_send > 0)
+        pack_motion(halo, peer, spheres);
+        if (peer->n_send > 0 && peer->rank != comm->rank)
             COMM_CHECK(MPI_Isend(peer->out, MOTION * peer->n_send, MPI_DOUBLE, peer->rank, 2,
                                  comm->mpi, &halo->requests[n++]));
     }
     COMM_CHECK(MPI_Waitall(n, halo->requests, MPI_STATUSES_IGNORE));
-    for (int p = 0; p < halo->n_peers; p++)
-        unpack_motion(&halo->peers[p], spheres);
+    for (int p = 0; p < halo->n_peers; p++) {
+        const struct halo_peer *peer = &halo->peers[p];
+        unpack_motion(peer, peer->rank == comm->rank ? peer->out : peer->in, spheres);
+    }
 }

@@ -8,6 +8,10 @@
  * spheres larger than a subdomain and subdomains thinner than a radius.  The boxes of centres
  * are known to all: O(ranks) numbers.
  *
+ * Where space is periodic, an image is a ghost too, shifted by whole periods; a rank may hold
+ * images of its own spheres, and several copies of one.  Shifts are exact (model/periodic.h),
+ * so a contact over the boundary is like any other between two ranks.
+ *
  * The paper's classes are counted by the way, with its half-buffer boxes: internal (the sphere
  * lies within the subdomain shrunk by half the buffer), interfacial (its centre is ours but it
  * reaches the buffer), external (a copy).
@@ -19,6 +23,7 @@
 
 #include "base/comm.h"
 #include "model/order.h"
+#include "model/periodic.h"
 
 struct boxes;
 struct materials;
@@ -27,16 +32,21 @@ struct spheres;
 struct halo_peer {
     int rank;
     int n_send, send_capacity, n_receive, receive_capacity;
-    int *send;    /* storage indices of owned spheres, in canonical order */
+    int n_plain;          /* those of `send` that go as they are come first, then images */
+    int *send;            /* storage indices of owned spheres, in canonical order each shift */
+    unsigned char *image; /* which of the shifts each takes */
+    int image_capacity;
     int *receive; /* storage indices of ghosts, in the sender's order */
     double *out, *in;
     int out_capacity, in_capacity;
 };
 
 struct halo {
-    int n_peers;             /* ranks with which ghosts are exchanged */
-    struct halo_peer *peers; /* room for every rank */
-    MPI_Request *requests;   /* two a peer */
+    int n_peers;                       /* ranks with which ghosts are exchanged */
+    struct halo_peer *peers;           /* room for every rank */
+    MPI_Request *requests;             /* two a peer */
+    int n_shifts;                      /* 1 where nothing is periodic */
+    double shifts[PERIODIC_IMAGES][3]; /* of images; the first is none [m] */
     struct comm_mail mail;
     void *all_boxes; /* scratch: every rank's boxes of centres */
     int n_internal, n_interfacial;

@@ -326,6 +326,7 @@ struct job_insertion {
     int by; /* set of enum job_split */
 };
 
+enum job_direction { JOB_DIRECTION_X = 1, JOB_DIRECTION_Y = 2, JOB_DIRECTION_Z = 4 };
 enum job_leavers { JOB_LEAVERS_STOP, JOB_LEAVERS_REMOVE, JOB_LEAVERS_IGNORE };
 enum job_weights { JOB_WEIGHTS_CONTACTS, JOB_WEIGHTS_CANDIDATES };
 enum job_search { JOB_SEARCH_AUTO, JOB_SEARCH_ALL_PAIRS };
@@ -365,6 +366,7 @@ struct job {
     struct {
         bool given;           /* else: the extent of the scene, grown by its size */
         struct vec3 min, max; /* [m] */
+        int periodic;         /* directions that repeat, a set of enum job_direction */
         enum job_leavers leavers;
     } domain;
     struct {

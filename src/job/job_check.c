@@ -817,11 +817,37 @@ static void domain_check(const struct check *check)
     if (min != max)
         mistake(check, min ? "domain.max" : "domain.min",
                 "is missing; both corners, or none, are expected");
+    else if (!min && job->domain.periodic != 0)
+        mistake(check, "domain.periodic",
+                "repeats a region that is not given; domain.min and domain.max are expected");
     else if (min &&
              !(job->domain.min.x < job->domain.max.x && job->domain.min.y < job->domain.max.y &&
                job->domain.min.z < job->domain.max.z))
         mistake(check, "domain.max",
                 "is not above min in x, y and z; a greater corner is expected");
+}
+
+/* A plane oblique to a periodic direction would not meet its own image. */
+static void periods_check(const struct check *check)
+{
+    const struct job *job = check->job;
+    for (int s = 0; s < job->n_sections; s++) {
+        const struct vec3 n = job->sections[s].normal;
+        const double normal[3] = {n.x, n.y, n.z};
+        char path[64];
+        PATH("sections.%d.", s);
+        bool fits = !is_clean(check, path);
+        bool along = false;
+        for (int k = 0; k < 3; k++) {
+            fits = fits || fabs(normal[k]) == 1.0;
+            along = along || ((job->domain.periodic & 1 << k) != 0 && normal[k] != 0.0);
+        }
+        PATH("sections.%d.normal", s);
+        if (along && !fits)
+            mistake(check, path,
+                    "is oblique to a periodic direction; one along or across all of "
+                    "domain.periodic is expected");
+    }
 }
 
 /* ------------------------------------------------------------------------------- pairs */
@@ -907,6 +933,7 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     sections_check(&check);
     gravity_check(&check);
     domain_check(&check);
+    periods_check(&check);
     pairs_check(&check, falling, standing);
     laws_check(&check);
     for (int m = 0; m < job->n_materials; m++)

@@ -56,6 +56,7 @@ static const char *const materials_only[] = {"material", NULL};
 static const char *const splits[] = {"material", "size", NULL};
 static const char *const drives[] = {"slide", "turn", NULL};
 static const char *const fulls[] = {"wait", "stop", NULL};
+static const char *const directions[] = {"x", "y", "z", NULL};
 static const char *const leavers[] = {"stop", "remove", "ignore", NULL};
 static const char *const weights[] = {"contacts", "candidates", NULL};
 static const char *const searches[] = {"auto", "all-pairs", NULL};
@@ -685,6 +686,11 @@ static const struct schema_key domain_keys[] = {
     {"max", SCHEMA_NUMBER, "greatest corner of that region", .unit = "m",
      BETWEEN(-10.0 * FAR, 10.0 * FAR), GIVEN(struct job, domain.given),
      AT(struct job, domain.max)},
+    {"periodic", SCHEMA_CHOICES,
+     "directions along which the region repeats: what leaves on one side comes in on the other "
+     "and touches across; needs min and max, at least 2.5 of the largest diameters apart; "
+     "bodies are not repeated, let them reach past by a radius",
+     .standard = "[]", .choices = directions, AT(struct job, domain.periodic)},
     {"leavers", SCHEMA_CHOICE,
      "what a sphere that leaves the region does: stop the run, get removed, or go on",
      .standard = "stop", .choices = leavers, AT(struct job, domain.leavers)},

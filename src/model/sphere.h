@@ -19,6 +19,7 @@
 
 #include "base/field.h"
 #include "base/vec3.h"
+#include "model/periodic.h"
 
 struct materials;
 
@@ -47,6 +48,7 @@ enum sphere_field {
 struct spheres {
     int n_owned, n_all; /* owned; owned and ghosts */
     int capacity;
+    struct periodic periodic;                 /* the space that they are in */
     struct sphere_row *motion, *spin, *force; /* n_all + SPHERE_DUMMIES used */
     int64_t *id;                              /* global, never reused */
     int64_t *order_cell; /* cell of the order grid at birth or at the last renewal */
@@ -76,9 +78,16 @@ void sphere_complete(struct spheres *spheres, int i, const struct materials *mat
 /* Writes the dummies behind the last sphere. */
 void spheres_pad(struct spheres *spheres);
 
+/* Where the centre is in memory: between searches perhaps beyond a periodic boundary, a ghost a
+ * period away from its owner.  Differences are what they are everywhere [m]. */
 static inline double *sphere_position(const struct spheres *spheres, int i)
 {
     return spheres->motion[i].lane;
+}
+/* Where it is in the domain: all that depends on places, not on their differences. [m] */
+static inline struct vec3 sphere_place(const struct spheres *spheres, int i)
+{
+    return periodic_place(&spheres->periodic, spheres->motion[i].lane);
 }
 static inline double sphere_radius(const struct spheres *spheres, int i)
 {

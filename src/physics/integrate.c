@@ -56,12 +56,13 @@ static double background_loss(const struct integrate_work *work, const double be
 static inline __attribute__((always_inline)) void move_spheres(struct integrate_work *work,
                                                                struct spent *spent, double keep,
                                                                double push, bool ledger,
-                                                               bool damped)
+                                                               bool damped, bool periodic)
 {
     const double dt = work->dt, kick = push * dt;
     const two fall_xy = {kick * work->gravity[0], kick * work->gravity[1]},
               fall_z = {kick * work->gravity[2], 0.0};
     const two first = {1.0, 0.0}, keep_z = {keep, 1.0}, step_z = {dt, 0.0}, zero = {0.0, 0.0};
+    const two snap_xy = {work->snap[0], work->snap[1]}, snap_z = {work->snap[2], 0.0};
     for (int i = 0; i < work->n; i++) {
         two *motion = (two *)(void *)&work->motion[i], *spin = (two *)(void *)&work->spin[i];
         two *force = (two *)(void *)&work->force[i];
@@ -86,7 +87,12 @@ static inline __attribute__((always_inline)) void move_spheres(struct integrate_
             work->dissipated_damping[i] +=
                 background_loss(work, before, after, inverse_mass, radius);
         }
-        const two x_xy = motion[0] + v_xy * dt, x_z = motion[1] + v_z * step_z;
+        two d_xy = v_xy * dt, d_z = v_z * step_z;
+        if (periodic) { /* (5.5) */
+            d_xy = (d_xy + snap_xy) - snap_xy;
+            d_z = (d_z + snap_z) - snap_z;
+        }
+        const two x_xy = motion[0] + d_xy, x_z = motion[1] + d_z;
         motion[0] = x_xy;
         motion[1] = x_z;
         motion[2] = v_xy;
@@ -111,12 +117,14 @@ void integrate_spheres(struct integrate_work *work)
     const double half = 0.5 * work->damping * work->dt;
     const double push = 1.0 / (1.0 + half), keep = (1.0 - half) / (1.0 + half);
     const bool damped = work->damping > 0.0;
-    if (work->ledger && damped)
-        move_spheres(work, &spent, keep, push, true, true);
+    if (work->periodic)
+        move_spheres(work, &spent, keep, push, work->ledger, damped, true);
+    else if (work->ledger && damped)
+        move_spheres(work, &spent, keep, push, true, true, false);
     else if (work->ledger)
-        move_spheres(work, &spent, keep, push, true, false);
+        move_spheres(work, &spent, keep, push, true, false, false);
     else
-        move_spheres(work, &spent, keep, push, false, false);
+        move_spheres(work, &spent, keep, push, false, false, false);
     for (int s = 0; s < 2; s++) {
         const double c[3] = {spent.xy[s][0], spent.xy[s][1], spent.z[s][0]};
         work->spent[s] = sqrt(c[0] * c[0] + c[1] * c[1] + c[2] * c[2]) * work->dt;

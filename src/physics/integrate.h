@@ -17,8 +17,9 @@ struct integrate_work {
     double (*inverse_allowance)[2];                   /* [1/m] */
     double dt;                                        /* [s] */
     double gravity[3];                                /* [m/s2] */
-    double damping;                                   /* mass-proportional [1/s]; 0: none */
-    bool ledger;
+    double snap[3]; /* (d + snap) - snap rounds a motion where space is periodic; else 0 [m] */
+    double damping; /* mass-proportional [1/s]; 0: none */
+    bool ledger, periodic;
     /* out */
     double spent[2]; /* largest share of each allowance that this step's motion used [-] */
     bool bad;        /* some place or velocity is NaN or infinite */

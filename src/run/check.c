@@ -181,12 +181,31 @@ static void read_surfaces(struct job *job, struct mistakes *mistakes)
     }
 }
 
+/* Two spheres must never touch twice, in one place and over the boundary; nor one itself. */
+static void add_period_mistakes(struct mistakes *mistakes, const struct job *job, double radius)
+{
+    for (int i = 0; i < job->n_insertions; i++) {
+        const double incoming = inflow_of(job, i).radius_most;
+        radius = incoming > radius ? incoming : radius;
+    }
+    static const double DIAMETERS = 2.5; /* two, and what overlaps and motion take */
+    const struct vec3 size = vec3_sub(job->domain.max, job->domain.min);
+    const double sizes[3] = {size.x, size.y, size.z};
+    for (int k = 0; k < 3; k++)
+        if ((job->domain.periodic & 1 << k) && sizes[k] < DIAMETERS * 2.0 * radius)
+            mistakes_add(mistakes, job->path, 0, 0,
+                         "domain.periodic repeats every %.4g m along %c; at least %.1f of the "
+                         "largest diameters, %.4g m, are expected",
+                         sizes[k], "xyz"[k], DIAMETERS, DIAMETERS * 2.0 * radius);
+}
+
 bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
 {
     struct extent scene = extent_nothing();
     const int *grid = job->decomposition.fixed;
     int64_t n_spheres = 0;
-    double speed = 0.0; /* at the start [m/s] */
+    double speed = 0.0;   /* at the start [m/s] */
+    double largest = 0.0; /* radius [m] */
     struct packings packings = {0, NULL};
     struct bodies bodies = {.n = 0};
     read_surfaces(job, mistakes);
@@ -201,6 +220,7 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
         extent_add(&scene, summary.extent.high, 0.0);
         n_spheres += packing->n;
         speed = summary.speed > speed ? summary.speed : speed;
+        largest = summary.radius_most > largest ? summary.radius_most : largest;
         if (job->spheres[g].file != NULL)
             job->spheres[g].sum = checksum(job->spheres[g].file);
     }
@@ -217,6 +237,7 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
             "decomposition.grid is %d x %d x %d on %d ranks; a product equal to the ranks is "
             "expected",
             grid[0], grid[1], grid[2], n_ranks);
+    add_period_mistakes(mistakes, job, largest);
     if (mistakes->n == 0) {
         survey_check(job, &bodies, mistakes);
         add_bodies(&bodies, &scene);
@@ -243,13 +264,17 @@ static void print_extent(const char *label, const struct extent *e)
                e->high.x, e->low.y, e->high.y, e->low.z, e->high.z);
 }
 
-/* Does every centre lie in the domain? */
+/* Does every centre lie in the domain?  Along periodic directions all do. */
 static bool is_inside(const struct extent *centres, const struct job *job)
 {
     const struct vec3 *low = &job->domain.min, *high = &job->domain.max;
-    return centres->low.x >= low->x && centres->low.y >= low->y && centres->low.z >= low->z &&
-           centres->high.x <= high->x && centres->high.y <= high->y &&
-           centres->high.z <= high->z;
+    const bool along[3] = {centres->low.x >= low->x && centres->high.x <= high->x,
+                           centres->low.y >= low->y && centres->high.y <= high->y,
+                           centres->low.z >= low->z && centres->high.z <= high->z};
+    bool inside = true;
+    for (int k = 0; k < 3; k++)
+        inside = inside && (along[k] || (job->domain.periodic & 1 << k) != 0);
+    return inside;
 }
 
 /* Twelve contacts are hardly all as deep as the fastest impact: steps up to twice what these
@@ -344,7 +369,7 @@ static void print_insertion(const struct job *job, int k, const struct materials
 }
 
 static int64_t print_groups(const struct job *job, const struct bodies *bodies,
-                            struct extent *scene)
+                            struct extent *scene, double *radius_most)
 {
     struct group_summary *groups = array_allocate((size_t)job->n_spheres, sizeof *groups);
     struct materials materials;
@@ -359,6 +384,8 @@ static int64_t print_groups(const struct job *job, const struct bodies *bodies,
     for (int g = 0; g < job->n_spheres; g++) {
         groups[g] = summarise(job, &packings.groups[g]);
         speed = groups[g].speed > speed ? groups[g].speed : speed;
+        *radius_most =
+            groups[g].radius_most > *radius_most ? groups[g].radius_most : *radius_most;
         extent_add(scene, groups[g].extent.low, 0.0);
         extent_add(scene, groups[g].extent.high, 0.0);
         n += groups[g].n;
@@ -377,6 +404,36 @@ static int64_t print_groups(const struct job *job, const struct bodies *bodies,
     packings_close(&packings);
     free(groups);
     return n;
+}
+
+/* A sphere at a periodic boundary would meet the end of such a body, or not see it at all. */
+static void warn_of_end(const struct job *job, const char *name, const struct extent *extent,
+                        double radius)
+{
+    const double from[3] = {job->domain.min.x, job->domain.min.y, job->domain.min.z},
+                 to[3] = {job->domain.max.x, job->domain.max.y, job->domain.max.z};
+    const double low[3] = {extent->low.x, extent->low.y, extent->low.z},
+                 high[3] = {extent->high.x, extent->high.y, extent->high.z};
+    for (int k = 0; k < 3; k++) {
+        const bool ends_low = low[k] < from[k] + radius && low[k] > from[k] - radius;
+        const bool ends_high = high[k] > to[k] - radius && high[k] < to[k] + radius;
+        if ((job->domain.periodic & 1 << k) && (ends_low || ends_high))
+            report_warn(
+                "body '%s' ends within a radius, %.3g m, of the periodic boundary along "
+                "%c; let it reach past by a radius on both sides",
+                name, radius, "xyz"[k]);
+    }
+}
+
+static void warn_of_ends(const struct job *job, const struct bodies *bodies, double radius)
+{
+    for (int b = 0; b < bodies->n && job->domain.periodic != 0; b++) {
+        struct extent extent = extent_nothing();
+        const struct body *body = &bodies->list[b];
+        for (int v = 0; v < body->mesh.n_vertices; v++)
+            extent_add(&extent, body->mesh.reference[v], 0.0);
+        warn_of_end(job, body->name, &extent, radius);
+    }
 }
 
 /* The forces of the start, as the run would find them.  Collective. */
@@ -419,8 +476,10 @@ void check_print(const struct job *job, const struct comm *comm)
     report_say("time      %.6g s in %.0f steps of %.6g s", job->time.end, n_steps,
                job->time.step);
     bodies_build(&bodies, job);
-    const int64_t n = print_groups(job, &bodies, &scene);
+    double radius_most = 0.0;
+    const int64_t n = print_groups(job, &bodies, &scene, &radius_most);
     survey_print(job, &bodies);
+    warn_of_ends(job, &bodies, radius_most);
     add_bodies(&bodies, &scene);
     bodies_clear(&bodies);
     print_extent("scene    ", &scene);

@@ -77,10 +77,11 @@ void contents_begin(struct contents *contents)
 void contents_add(struct contents *contents, const struct spheres *spheres, int i,
                   const double velocity[3])
 {
-    const double *x = sphere_position(spheres, i), mass = 1.0 / sphere_inverse_mass(spheres, i);
+    const struct vec3 x = sphere_place(spheres, i);
+    const double mass = 1.0 / sphere_inverse_mass(spheres, i);
     for (int c = 0; c < contents->n; c++) {
         struct content *content = &contents->list[c];
-        if (!region_contains(&content->region, (struct vec3){x[0], x[1], x[2]}, 0.0))
+        if (!region_contains(&content->region, x, 0.0))
             continue;
         tally_add(&content->tally, spheres, i);
         for (int k = 0; k < 3; k++) {

@@ -162,12 +162,6 @@ static bool has_occasion(const struct simulation *sim, struct insertion *inserti
 /* --------------------------------------------------------------------------------------
  * room */
 
-static struct vec3 place_of(const struct spheres *spheres, int i)
-{
-    const double *x = sphere_position(spheres, i);
-    return (struct vec3){x[0], x[1], x[2]};
-}
-
 /* May a sphere there be in the way of what lies within the region? */
 static bool is_near(const struct region *region, struct vec3 x, double radius)
 {
@@ -176,13 +170,33 @@ static bool is_near(const struct region *region, struct vec3 x, double radius)
            x.x < high.x + radius && x.y < high.y + radius && x.z < high.z + radius;
 }
 
+/* Adds the sphere, and its images over periodic boundaries, where they may be in the way.  New
+ * spheres lie wholly within the domain and cannot meet each other's images. */
+static void add_to_room(struct insertions *all, const bool *occasion,
+                        const struct spheres *spheres, int i, int n_shifts,
+                        double shifts[PERIODIC_IMAGES][3])
+{
+    const struct vec3 place = sphere_place(spheres, i);
+    const double radius = sphere_radius(spheres, i);
+    for (int s = 0; s < n_shifts; s++) {
+        const struct vec3 shift = {shifts[s][0], shifts[s][1], shifts[s][2]};
+        const struct vec3 x = vec3_add(place, shift);
+        bool near = false;
+        for (int k = 0; k < all->n && !near; k++)
+            near = occasion[k] && is_near(&all->list[k].region, x, radius);
+        if (near)
+            room_add(&all->room, x, radius);
+    }
+}
+
 /* The owned spheres that could be in the way of the insertions that have an occasion. */
 static void fill_room(struct simulation *sim, const bool *occasion,
                       const unsigned char *removed)
 {
     struct insertions *all = &sim->insertions;
     const struct spheres *spheres = &sim->spheres;
-    double radius_max = 0.0;
+    double radius_max = 0.0, shifts[PERIODIC_IMAGES][3];
+    const int n_shifts = periodic_shifts(&spheres->periodic, shifts);
     all->radius_max = 0.0;
     for (int k = 0; k < all->n; k++) {
         const double most = all->list[k].sizes.max;
@@ -190,14 +204,10 @@ static void fill_room(struct simulation *sim, const bool *occasion,
     }
     room_begin(&all->room, 2.0 * radius_max);
     for (int i = 0; i < spheres->n_owned; i++) {
-        const struct vec3 x = place_of(spheres, i);
         const double radius = sphere_radius(spheres, i);
-        bool near = false;
         all->radius_max = radius > all->radius_max ? radius : all->radius_max;
-        for (int k = 0; k < all->n && !near; k++)
-            near = occasion[k] && is_near(&all->list[k].region, x, radius);
-        if (near && (removed == NULL || !removed[i]))
-            room_add(&all->room, x, radius);
+        if (removed == NULL || !removed[i])
+            add_to_room(all, occasion, spheres, i, n_shifts, shifts);
     }
     comm_max(sim->comm, &all->radius_max, 1);
 }
@@ -211,8 +221,10 @@ static bool draw_place(const struct simulation *sim, struct insertion *insertion
     for (int n = 0; n < MOST; n++) {
         *place = region_point(&insertion->region, radius, (uint64_t)sim->job->seed, stream,
                               (uint64_t)insertion->n_attempts++);
-        if (region_contains(&insertion->region, *place, radius))
-            return true;
+        if (!region_contains(&insertion->region, *place, radius))
+            continue;
+        *place = periodic_settled(&sim->spheres.periodic, *place);
+        return true;
     }
     return false;
 }

@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
 #include "base/report.h"
@@ -140,13 +141,14 @@ static double sphere_energies(const struct simulation *sim, int i, double energi
     centred_motion(sim, i, v, w);
     const double mass = 1.0 / sphere_inverse_mass(&sim->spheres, i),
                  radius = sphere_radius(&sim->spheres, i);
-    const double *x = sphere_position(&sim->spheres, i), *force = sim->spheres.force[i].lane;
+    const double *force = sim->spheres.force[i].lane;
+    const struct vec3 x = sphere_place(&sim->spheres, i);
     const double speed2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
     const struct vec3 g = sim->job->gravity;
     energies[ENERGY_TRANSLATION] = 0.5 * mass * speed2;
     energies[ENERGY_ROTATION] =
         0.2 * mass * radius * radius * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
-    energies[ENERGY_POTENTIAL] = -mass * (g.x * x[0] + g.y * x[1] + g.z * x[2]);
+    energies[ENERGY_POTENTIAL] = -mass * (g.x * x.x + g.y * x.y + g.z * x.z);
     energies[ENERGY_FRICTION] = sim->spheres.dissipated_friction[i] + force[3];
     energies[ENERGY_DAMPING] = sim->spheres.dissipated_damping[i] + 0.5 * force[7];
     if (sim->job->energy_ledger) /* half of what background damping takes in this step */
@@ -154,6 +156,32 @@ static double sphere_energies(const struct simulation *sim, int i, double energi
                                     (energies[ENERGY_TRANSLATION] + energies[ENERGY_ROTATION]);
     energies[ENERGY_TANGENTIAL] = sim->spheres.dissipated_tangential[i];
     return speed2;
+}
+
+/* Adds the potential energy by which spheres that lie beyond a periodic boundary differ from
+ * their images within: a rounded share a period, so the moment of the bookkeeping does not
+ * show.  (7.2) */
+static void add_crossings(const struct simulation *sim, struct exact_sum *sum)
+{
+    const struct periodic *periodic = &sim->spheres.periodic;
+    const double g[3] = {sim->job->gravity.x, sim->job->gravity.y, sim->job->gravity.z};
+    for (int i = 0; i < sim->spheres.n_owned && periodic->any; i++) {
+        double place[3];
+        int turns[3];
+        memcpy(place, sphere_position(&sim->spheres, i), sizeof place);
+        periodic_wrap(periodic, place, turns);
+        for (int k = 0; k < 3; k++) {
+            const double share =
+                g[k] * periodic->period[k] / sphere_inverse_mass(&sim->spheres, i);
+            for (int n = turns[k]; n != 0; n += n > 0 ? -1 : 1)
+                exact_sum_add(sum, n > 0 ? -share : share);
+        }
+    }
+}
+
+void observe_crossings(struct simulation *sim)
+{
+    add_crossings(sim, &sim->observe.totals[OBSERVE_CROSSED]);
 }
 
 /* Elastic energy of the pairs whose first sphere is owned, and their number. */
@@ -204,6 +232,8 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
                 exact_sum_add(&sums[e], own[e]);
         }
     }
+    exact_sum_merge(&sums[ENERGY_POTENTIAL], &sim->observe.totals[OBSERVE_CROSSED]);
+    add_crossings(sim, &sums[ENERGY_POTENTIAL]);
     counts[0] = sim->spheres.n_owned;
     counts[1] = add_pair_energy(sim, &sums[ENERGY_ELASTIC]);
     counts[2] = count_facets(sim);
@@ -445,7 +475,7 @@ int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
     static const char *const totals[OBSERVE_N_TOTALS] = {
         "energy_start",       "removed_energy", "removed_friction", "removed_damping",
         "removed_tangential", "last_step",      "turned",           "overlap",
-        "inserted_energy",
+        "inserted_energy",    "crossed",
     };
     static const char *const loads[] = {"force_x",  "force_y",  "force_z",
                                         "torque_x", "torque_y", "torque_z"};

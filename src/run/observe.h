@@ -28,6 +28,7 @@ enum observe_total {
     OBSERVE_TURNED,          /* largest energy turned over so far [J]; on rank 0 */
     OBSERVE_OVERLAP,         /* largest overlap/radius since then, times 2^40; on rank 0 */
     OBSERVE_INSERTED_ENERGY, /* carried in by spheres that came in [J] */
+    OBSERVE_CROSSED,         /* potential energy gained by crossing periodic boundaries [J] */
     OBSERVE_N_TOTALS,
 };
 
@@ -48,6 +49,9 @@ void observe_sample(struct simulation *sim);
 void observe_energy(struct simulation *sim);
 /* Notes this step's largest overlap, the same on all ranks. */
 void observe_overlap(struct simulation *sim, double overlap);
+/* Books who lies beyond a periodic boundary, before places are brought into the domain.
+ * Local. */
+void observe_crossings(struct simulation *sim);
 /* Books sphere i as leaving the run. */
 void observe_removed(struct simulation *sim, int i);
 

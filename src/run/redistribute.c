@@ -21,6 +21,8 @@ static const double SEARCH_STEPS = 60.0, INNER_STEPS = 20.0;
 static const double SPEED_MARGIN = 1.3;
 /* Largest allowance and least inner allowance, in radii. */
 static const double ALLOWANCE_MOST = 6.0, INNER_LEAST = 0.0015;
+/* Largest allowance in shortest periods: images one period away are then all that is needed. */
+static const double PERIOD_SHARE = 0.125;
 /* Below this exact share a search can wait. */
 static const double SPENT_FINE = 0.7;
 
@@ -47,12 +49,14 @@ static void choose_allowances(struct simulation *sim, int begin, int end)
 {
     struct spheres *spheres = &sim->spheres;
     const double horizon = SPEED_MARGIN * SEARCH_STEPS * sim->dt;
+    const double far = PERIOD_SHARE * spheres->periodic.shortest;
     for (int i = begin; i < end; i++) {
         const double *v = sphere_velocity(spheres, i);
         const double most = ALLOWANCE_MOST * sphere_radius(spheres, i);
         const double reach = horizon * sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
         double allowance = reach > sim->half_buffer ? reach : sim->half_buffer;
         allowance = allowance < most ? allowance : most;
+        allowance = allowance < far ? allowance : far;
         spheres->allowance[i] = allowance;
         spheres->inverse_allowance[i][0] = 1.0 / allowance;
     }
@@ -122,7 +126,8 @@ static void restore_arrivals(struct simulation *sim, bool some_left_run)
         if (some_left_run && (first < 0 || second < 0))
             continue;
         CHECK(first >= 0 && second >= 0, "a contact of a sphere that is not here");
-        contact_set_restore(&sim->contacts, &sim->candidates, record, first, second);
+        contact_set_restore(&sim->contacts, &sim->candidates, &sim->spheres, record, first,
+                            second);
     }
     migrate->n_contacts = 0;
 }
@@ -181,11 +186,24 @@ static void update_subdomains(struct simulation *sim, bool moves, bool sort_all,
         restore_facets(sim);
 }
 
+/* Brings all places into the domain, with note of who crossed a periodic boundary. */
+static void wrap_places(struct simulation *sim)
+{
+    struct spheres *spheres = &sim->spheres;
+    int turns[3];
+    if (!spheres->periodic.any)
+        return;
+    observe_crossings(sim);
+    for (int i = 0; i < spheres->n_owned; i++)
+        periodic_wrap(&spheres->periodic, sphere_position(spheres, i), turns);
+}
+
 void redistribute(struct simulation *sim, const unsigned char *removed)
 {
     const struct job *job = sim->job;
     runtime_begin(&sim->runtime);
     const bool renew = is_multiple(sim->step, job->order_every);
+    wrap_places(sim);
     if (renew)
         order_renew(&sim->spheres, sim->comm);
     const bool lost = balance_is_lost(&sim->balance, sim->comm, job->decomposition.imbalance);
@@ -195,7 +213,8 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
     const bool born = sim->insertions.n_new > 0;
     if (born)
         insertions_place(sim);
-    const bool moves = sim->comm->n_ranks > 1 || renew || removed != NULL || born;
+    const bool moves =
+        sim->comm->n_ranks > 1 || renew || removed != NULL || born || sim->spheres.periodic.any;
     update_subdomains(sim, moves, renew, removed, &sim->contacts);
     runtime_end(&sim->runtime, RUNTIME_REDISTRIBUTE);
     search(sim, moves ? sim->migrate.moved : NULL, removed != NULL);

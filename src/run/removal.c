@@ -52,8 +52,7 @@ int64_t removals_mark(struct removals *removals, const struct spheres *spheres, 
 {
     int64_t n = 0;
     for (int i = 0; removals->n > 0 && i < spheres->n_owned; i++) {
-        const double *x = sphere_position(spheres, i);
-        const int r = taker(removals, (struct vec3){x[0], x[1], x[2]}, time);
+        const int r = taker(removals, sphere_place(spheres, i), time);
         if (r < 0)
             continue;
         tally_add(&removals->list[r].taken, spheres, i);

@@ -33,30 +33,50 @@ void sections_clear(struct sections *sections)
     *sections = (struct sections){0};
 }
 
-/* Distance of the centre from the plane, positive on the forward side [m]. */
-static double distance(const struct job_section *section, const double *x)
+/* Period along the normal; 0 where the plane is not across a periodic direction [m]. */
+static double period_of(const struct job_section *section, const struct spheres *spheres)
 {
-    const struct vec3 offset = {x[0] - section->point.x, x[1] - section->point.y,
-                                x[2] - section->point.z};
+    const double n[3] = {section->normal.x, section->normal.y, section->normal.z};
+    double period = 0.0;
+    for (int k = 0; k < 3 && spheres->periodic.any; k++)
+        period = n[k] != 0.0 ? spheres->periodic.period[k] : period;
+    return period;
+}
+
+/* Distance of the centre from the plane, or the nearest image of it, positive on the forward
+ * side [m]. */
+static double distance(const struct job_section *section, const struct spheres *spheres, int i)
+{
+    const struct vec3 offset = periodic_shortest(
+        &spheres->periodic, vec3_sub(sphere_place(spheres, i), section->point));
     return vec3_dot(offset, section->normal);
 }
 
-/* Where the centre, which is `past` beyond the plane along the normal, went through it; its
- * step ended with velocity v. [m] */
-static struct vec3 passage(const struct job_section *section, const double *x, const double *v,
-                           double past)
+/* Is the sphere about half way between a plane and its image?  There sides change without a
+ * passage. */
+static bool is_between(double d, double period)
 {
-    const struct vec3 place = {x[0], x[1], x[2]}, velocity = {v[0], v[1], v[2]};
+    return period > 0.0 && !(d > -0.25 * period && d < 0.25 * period);
+}
+
+/* Where the centre, which is `past` beyond the plane along the normal, went through it, seen
+ * from the plane's point; its step ended with velocity v. [m] */
+static struct vec3 passage(const struct job_section *section, const struct spheres *spheres,
+                           int i, double past)
+{
+    const double *v = sphere_velocity(spheres, i);
+    const struct vec3 place = vec3_sub(sphere_place(spheres, i), section->point);
+    const struct vec3 velocity = {v[0], v[1], v[2]};
     const double speed = vec3_dot(velocity, section->normal);
     /* Rounding may have brought it across against its velocity: then it is there already. */
     const bool went = (past > 0.0 && speed > 0.0) || (past < 0.0 && speed < 0.0);
-    return went ? vec3_axpy(place, -(past / speed), velocity) : place;
+    return periodic_shortest(&spheres->periodic,
+                             went ? vec3_axpy(place, -(past / speed), velocity) : place);
 }
 
-/* Does the part of the plane that counts hold this place? */
-static bool holds(const struct job_section *section, struct vec3 place)
+/* Does the part of the plane that counts hold the place with this offset from its point? */
+static bool holds(const struct job_section *section, struct vec3 offset)
 {
-    const struct vec3 offset = vec3_sub(place, section->point);
     if (section->kind == JOB_SECTION_DISC)
         return vec3_dot(offset, offset) <= section->radius * section->radius;
     /* `across` may lean towards the normal: the offset does not, so its length is all that
@@ -71,7 +91,7 @@ void sections_begin(const struct sections *sections, struct spheres *spheres, in
 {
     spheres->sides[i] = 0;
     for (int s = 0; s < sections->n; s++) {
-        if (distance(&sections->list[s], sphere_position(spheres, i)) > 0.0)
+        if (distance(&sections->list[s], spheres, i) > 0.0)
             spheres->sides[i] |= (int64_t)1 << s;
     }
 }
@@ -81,9 +101,11 @@ void sections_search(struct sections *sections, const struct spheres *spheres)
     sections->n_near = 0;
     for (int i = 0; i < spheres->n_owned; i++) {
         for (int s = 0; s < sections->n; s++) {
-            const double d = distance(&sections->list[s], sphere_position(spheres, i));
+            const double d = distance(&sections->list[s], spheres, i);
+            const double period = period_of(&sections->list[s], spheres);
             /* Twice the allowance: room for the rounding of d. */
-            if (d > 2.0 * spheres->allowance[i] || d < -2.0 * spheres->allowance[i])
+            const double reach = 2.0 * spheres->allowance[i], size = d < 0.0 ? -d : d;
+            if (size > reach && !(period > 0.0 && 0.5 * period - size <= reach))
                 continue;
             ARRAY_GROW(sections->near, sections->n_near + 1, sections->near_capacity);
             sections->near[sections->n_near++] = (struct sections_near){i, s};
@@ -97,13 +119,15 @@ void sections_pass(struct sections *sections, struct spheres *spheres)
         const int i = sections->near[k].sphere, s = sections->near[k].section;
         const int64_t bit = (int64_t)1 << s;
         const struct job_section *section = &sections->list[s];
-        const double *x = sphere_position(spheres, i), past = distance(section, x);
+        const double past = distance(section, spheres, i);
         const bool forward = past > 0.0;
         if (forward == ((spheres->sides[i] & bit) != 0))
             continue;
         spheres->sides[i] ^= bit;
+        if (is_between(past, period_of(section, spheres)))
+            continue;
         if (section->kind == JOB_SECTION_PLANE ||
-            holds(section, passage(section, x, sphere_velocity(spheres, i), past)))
+            holds(section, passage(section, spheres, i, past)))
             tally_add(&sections->counts[s].passed[forward ? 0 : 1], spheres, i);
     }
 }

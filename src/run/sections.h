@@ -6,7 +6,8 @@
  * section).  A disc or a rectangle counts only what passes within it: the place of the passage
  * follows from the place and velocity after the step, along which the sphere has just moved.
  * Only spheres that can reach a plane before the next search are looked at: a saving that
- * changes no count.
+ * changes no count.  A plane across a periodic direction is repeated with it: sides are those
+ * of the nearest image, and change without being counted half way between two.
  */
 #ifndef TREMIE_RUN_SECTIONS_H
 #define TREMIE_RUN_SECTIONS_H

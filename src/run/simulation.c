@@ -80,6 +80,7 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     materials_build(&sim->materials, job);
     bodies_build(&sim->bodies, job);
     spheres_init(&sim->spheres);
+    periodic_init(&sim->spheres.periodic, job);
     facet_contacts_init(&sim->facets, sim->bodies.n);
     contact_set_init(&sim->contacts, sim->materials.full, job->energy_ledger);
     sim->body_allowance = array_allocate((size_t)sim->bodies.n, sizeof *sim->body_allowance);
@@ -115,9 +116,9 @@ void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
                            const struct packing_sphere *new)
 {
     struct spheres *spheres = &sim->spheres;
-    spheres->motion[i] =
-        (struct sphere_row){{new->position.x, new->position.y, new->position.z, new->radius,
-                             new->velocity.x, new->velocity.y, new->velocity.z, new->radius}};
+    const struct vec3 x = periodic_settled(&spheres->periodic, new->position);
+    spheres->motion[i] = (struct sphere_row){{x.x, x.y, x.z, new->radius, new->velocity.x,
+                                              new->velocity.y, new->velocity.z, new->radius}};
     spheres->spin[i] =
         (struct sphere_row){{0.0, 0.0, 0.0, 0.0, new->angular_velocity.x,
                              new->angular_velocity.y, new->angular_velocity.z, 0.0}};
@@ -168,7 +169,7 @@ void simulation_create(struct simulation *sim, const struct comm *comm, const st
 static bool may_be_missing(const char *name)
 {
     static const char *const later[] = {"run.turned", "run.inserted_energy", "leavers.count",
-                                        "leavers.mass"};
+                                        "leavers.mass", "run.crossed"};
     for (size_t k = 0; k < sizeof later / sizeof *later; k++)
         if (strcmp(name, later[k]) == 0)
             return true;
@@ -303,6 +304,27 @@ struct runtime_sizes simulation_sizes(const struct simulation *sim)
     };
 }
 
+/* Files hold places within the domain; memory may not, before the next search.  Returns what
+ * unwrap_places() takes back. */
+static double (*wrap_places(struct simulation *sim))[3]
+{
+    struct spheres *spheres = &sim->spheres;
+    double(*held)[3] = array_allocate((size_t)spheres->n_owned, sizeof *held);
+    int turns[3];
+    for (int i = 0; i < spheres->n_owned; i++) {
+        memcpy(held[i], sphere_position(spheres, i), sizeof held[i]);
+        periodic_wrap(&spheres->periodic, sphere_position(spheres, i), turns);
+    }
+    return held;
+}
+
+static void unwrap_places(struct simulation *sim, double (*held)[3])
+{
+    for (int i = 0; i < sim->spheres.n_owned; i++)
+        memcpy(sphere_position(&sim->spheres, i), held[i], sizeof held[i]);
+    free(held);
+}
+
 static int write_checkpoint(struct simulation *sim, const struct run_folder *folder,
                             const char *job_text)
 {
@@ -323,6 +345,9 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
     checkpoint.contacts = contacts;
     checkpoint.n_facet_contacts = facet_contacts_records(&sim->facets, &sim->spheres, &facets);
     checkpoint.facet_contacts = facets;
+    const struct exact_sum crossed = sim->observe.totals[OBSERVE_CROSSED];
+    observe_crossings(sim);
+    double(*held)[3] = wrap_places(sim);
     checkpoint.n_monitors = observe_monitors(sim, &totals);
     checkpoint.monitors =
         array_allocate((size_t)checkpoint.n_monitors, sizeof *checkpoint.monitors);
@@ -334,6 +359,8 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
     insertions_put_notes(&sim->insertions, &checkpoint.notes);
     char *path = run_folder_checkpoint_path(folder, sim->step);
     const int status = checkpoint_write(sim->comm, path, &checkpoint);
+    unwrap_places(sim, held);
+    sim->observe.totals[OBSERVE_CROSSED] = crossed;
     free(path);
     checkpoint_clear(&checkpoint);
     return status;

@@ -96,7 +96,10 @@ static void integrate(struct simulation *sim, double spent[2], bool *bad)
         .gravity = {g.x, g.y, g.z},
         .damping = sim->job->damping,
         .ledger = sim->job->energy_ledger,
+        .periodic = spheres->periodic.any,
     };
+    for (int k = 0; k < 3; k++)
+        work.snap[k] = spheres->periodic.snap[k];
     integrate_spheres(&work);
     for (int i = spheres->n_owned; i < spheres->n_all; i++)
         spheres->force[i] =

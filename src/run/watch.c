@@ -121,10 +121,9 @@ static void fill_matrices(const struct simulation *sim, const int *slots,
         const struct facet_contact *contact = &sim->facets.list[k];
         if (!facet_touches(contact) || slots[contact->sphere] < 0)
             continue;
-        const double *x = sphere_position(&sim->spheres, contact->sphere);
         const struct vec3 n =
             contact_geometry_closest(&sim->bodies.list[contact->body].mesh, contact->feature,
-                                     (struct vec3){x[0], x[1], x[2]})
+                                     sphere_place(&sim->spheres, contact->sphere))
                 .normal; /* from the feature to the centre */
         const struct split split = split_facet(sim, contact);
         critical_step_add_matrix(&matrices[slots[contact->sphere]], &split.contact,
@@ -186,11 +185,16 @@ double watch_critical_step(const struct simulation *sim)
     return critical < most ? critical : most;
 }
 
-static bool is_outside(const struct job *job, const double *x)
+/* Nobody leaves along a periodic direction. */
+static bool is_outside(const struct simulation *sim, const double *x)
 {
-    const struct vec3 low = job->domain.min, high = job->domain.max;
-    return !(x[0] >= low.x && x[1] >= low.y && x[2] >= low.z && x[0] <= high.x &&
-             x[1] <= high.y && x[2] <= high.z);
+    const struct vec3 low = sim->job->domain.min, high = sim->job->domain.max;
+    const double least[3] = {low.x, low.y, low.z}, most[3] = {high.x, high.y, high.z};
+    bool inside = true;
+    for (int k = 0; k < 3; k++)
+        inside =
+            inside && ((x[k] >= least[k] && x[k] <= most[k]) || sim->spheres.periodic.along[k]);
+    return !inside;
 }
 
 /* The overlap that must be resolved: that of the sphere at rest on the stiffest partner;
@@ -223,15 +227,18 @@ static double find_rounding(const struct simulation *sim)
     for (int i = 0; i < spheres->n_owned; i++) {
         const double *x = sphere_position(spheres, i), radius = sphere_radius(spheres, i);
         double far = 0.0;
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; k < 3; k++) {
+            const double bound = spheres->periodic.quantum[k] * 0x1p52;
             far = fabs(x[k]) > far ? fabs(x[k]) : far;
+            far = bound > far ? bound : far;
+        }
         if (radius != known_radius || spheres->material[i] != known_material) {
             known_radius = radius;
             known_material = spheres->material[i];
             overlap = least_overlap(sim, i);
         }
         const double share = far * 0x1p-52 / (ROUNDING_BORNE * overlap);
-        if (share > most && !is_outside(sim->job, x))
+        if (share > most && !is_outside(sim, x))
             most = share;
     }
     return most;
@@ -388,7 +395,7 @@ int watch_leavers(struct watch *watch, struct simulation *sim, unsigned char *re
     int64_t n = 0;
     int first = -1;
     for (int i = 0; i < sim->spheres.n_owned; i++) {
-        if (removed[i] || !is_outside(sim->job, sphere_position(&sim->spheres, i)))
+        if (removed[i] || !is_outside(sim, sphere_position(&sim->spheres, i)))
             continue;
         removed[i] = 1;
         n++;
@@ -498,11 +505,10 @@ static void find_deepest_facet(const struct simulation *sim, struct deepest *dee
         const struct body *body = &sim->bodies.list[contact->body];
         const struct material_pair *pair =
             &sim->materials.pairs[spheres->material[i] * sim->materials.n + body->material];
-        const double *x = sphere_position(spheres, i);
+        const struct vec3 x = sphere_place(spheres, i);
         const double curvature = sphere_curvature(spheres, i);
-        const double distance = contact_geometry_closest(&body->mesh, contact->feature,
-                                                         (struct vec3){x[0], x[1], x[2]})
-                                    .distance;
+        const double distance =
+            contact_geometry_closest(&body->mesh, contact->feature, x).distance;
         const double overlap = overlap_of(pair, contact->history[CONTACT_RADIUS_LANE],
                                           curvature, sphere_radius(spheres, i) - distance);
         if (!(overlap * curvature > deepest->overlap))
@@ -510,7 +516,7 @@ static void find_deepest_facet(const struct simulation *sim, struct deepest *dee
         deepest->overlap = overlap * curvature;
         snprintf(deepest->what, sizeof deepest->what,
                  "sphere %lld at (%.4g, %.4g, %.4g) m and body '%.40s'",
-                 (long long)spheres->id[i], x[0], x[1], x[2], body->name);
+                 (long long)spheres->id[i], x.x, x.y, x.z, body->name);
         judge_stiffness(deepest, pair, overlap, curvature,
                         1.0 / sphere_inverse_mass(spheres, i),
                         contact->history[CONTACT_LAW_VELOCITY], sim->job->watch.overlap);

@@ -80,6 +80,18 @@ like bucket 1 "bucket, all pairs" bucket $all_pairs
 like bucket 3 "bucket on 3 ranks" bucket
 rm -rf bucket
 
+# ------------------------------------------------------------------ space that repeats
+reference periodic periodic
+for ranks in $counts; do
+    like periodic "$ranks" "periodic on $ranks ranks" periodic
+done
+like periodic 1 "periodic, search every step" periodic $(every 1)
+like periodic 2 "periodic on 2 ranks, all pairs" periodic $all_pairs
+like periodic 3 "periodic on 3 ranks, both levels at odd moments" periodic $(both_levels 13 11)
+like periodic 8 "periodic, 4x1x2 grid, search every 7 steps" periodic $(every 7) \
+    --set decomposition.grid=[4,1,2]
+rm -rf periodic
+
 # ------------------------------------------------------------------ physics and kernels
 # variants NAME SCENE OPTIONS...: another physics on one rank, three and five.
 variants()

@@ -122,6 +122,7 @@ relay()
 
 relay heap heap
 relay mixed mixed
+relay periodic periodic
 [ -z "$thorough" ] || relay "heap with friction 10" heap --set contact.pairs.0.friction=10
 relay "mixed with friction 10, no ledger" mixed --set contact.pairs.0.friction=10 \
     --set contact.ledger=false

@@ -12,6 +12,7 @@
 #include "check.h"
 #include "domain/boxes.h"
 #include "domain/rcb.h"
+#include "job/job.h"
 #include "model/material.h"
 #include "random_cloud.h"
 
@@ -279,6 +280,98 @@ TEST(built_anew)
         expect_copies(&scene, 0);
     }
     end(&scene);
+}
+
+/* Periodic space: for each two and each way round that may bring them within reach, the owner
+ * of either has a copy of the other there, exactly a period away, now and after a refresh. */
+
+/* Is there a copy of b whose place is that of b plus the shift? */
+static bool has_image(const struct scene *scene, int b, const double shift[3], int time)
+{
+    const struct spheres *spheres = &scene->spheres;
+    for (int i = 0; i < spheres->n_all; i++) {
+        const double *x = sphere_position(spheres, i);
+        bool same = spheres->id[i] == b;
+        for (int k = 0; k < 3; k++)
+            same = same && x[k] == cloud.x[b][k] + 0x1p-10 * time * k + shift[k];
+        if (same && sphere_velocity(spheres, i)[0] == motion_of(b, 0, time))
+            return true;
+    }
+    return false;
+}
+
+static void expect_images(const struct scene *scene, int time)
+{
+    const struct halo *halo = &scene->halo;
+    int n_missing = 0;
+    for (int i = 0; i < scene->spheres.n_owned; i++) {
+        const int a = (int)scene->spheres.id[i];
+        for (int b = 0; b < cloud.n; b++) {
+            for (int s = a == b ? 1 : 0; s < halo->n_shifts; s++) {
+                double distance2 = 0.0;
+                for (int k = 0; k < 3; k++) {
+                    const double way = cloud.x[b][k] + halo->shifts[s][k] - cloud.x[a][k];
+                    distance2 += way * way;
+                }
+                const double reach =
+                    cloud.radius[a] + cloud.allowance[a] + cloud.radius[b] + cloud.allowance[b];
+                n_missing +=
+                    distance2 < reach * reach && !has_image(scene, b, halo->shifts[s], time);
+            }
+        }
+    }
+    EXPECT(n_missing == 0);
+}
+
+static void settle(const struct periodic *periodic, double x[3])
+{
+    const struct vec3 place = periodic_settled(periodic, (struct vec3){x[0], x[1], x[2]});
+    memcpy(x, &place.x, 3 * sizeof *x);
+}
+
+static void check_images(int directions, double width)
+{
+    const struct job job = {
+        .domain = {true, {0.0, 0.0, 0.0}, {1.0, 1.0, width}, directions, 0}};
+    struct scene scene;
+    struct periodic periodic;
+    periodic_init(&periodic, &job);
+    for (int id = 0; id < cloud.n; id++)
+        settle(&periodic, cloud.x[id]);
+    begin(&scene);
+    scene.spheres.periodic = periodic;
+    for (int time = 0; time < 3; time++) {
+        for (int i = 0; i < scene.spheres.n_owned; i++) {
+            set_motion(&scene.spheres, i, time);
+            for (int k = 0; k < 3; k++)
+                sphere_position(&scene.spheres, i)[k] =
+                    cloud.x[scene.spheres.id[i]][k] + 0x1p-10 * time * k;
+        }
+        if (time == 0)
+            halo_build(&scene.halo, &scene.comm, &scene.boxes, &scene.spheres, &materials,
+                       0.01);
+        else
+            halo_refresh(&scene.halo, &scene.comm, &scene.spheres);
+        expect_images(&scene, time);
+    }
+    int64_t n = scene.spheres.n_all - scene.spheres.n_owned;
+    comm_sum_int(&scene.comm, &n, 1);
+    EXPECT(n > 0 && n < (cloud.n * scene.comm.n_ranks) * 26);
+    end(&scene);
+}
+
+TEST(images_over_periodic_boundaries)
+{
+    fill(150, 1.0, 1.0, 1.0, 0.03);
+    check_images(1, 1.0);
+    check_images(7, 1.0);
+    fill(60, 1.0, 1.0, 0.125, 0.02);
+    cloud.radius[7] = 0.025; /* the period is 2.5 diameters */
+    check_images(4, 0.125);
+    fill(60, 1.0, 1.0, 1.0, 0.01);
+    cloud.radius[11] = 0.2;
+    cloud.allowance[30] = 0.125;
+    check_images(3, 1.0);
 }
 
 int main(int argc, char **argv)

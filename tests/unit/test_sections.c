@@ -261,6 +261,56 @@ TEST(materials_and_size_classes)
     end();
 }
 
+/* Round a periodic direction: each passage counts once, the boundary and the place half way
+ * round count nothing, wherever the plane is. */
+TEST(round_and_round)
+{
+    const struct job space = {.domain = {true, {-3.0, -3.0, -3.0}, {3.0, 3.0, 3.0}, 4, 0}};
+    const double heights[] = {1.0, 3.0, -2.9, 0.0};
+    for (int h = 0; h < 4; h++) {
+        struct job_section plane = {.point = {0.0, 0.0, heights[h]},
+                                    .normal = {0.0, 0.0, -1.0}};
+        const struct job one = {.n_sections = 1, .sections = &plane};
+        sections_init(&sections, &one);
+        spheres_init(&spheres);
+        periodic_init(&spheres.periodic, &space);
+        const int up = add(0.0, 0.0, -2.0), down = add(1.0, 0.0, 2.0);
+        for (int n = 1; n <= 180; n++) { /* three times round in steps of 0.1 m */
+            if (n % 4 == 0)
+                sections_search(&sections, &spheres);
+            move_to(up, 0.0, 0.0, -2.0 + 0.1 * n);
+            move_to(down, 1.0, 0.0, 2.0 - 0.05 * n);
+        }
+        EXPECT(passed(0, 1) == 3.0);
+        const double crossed =
+            floor((2.0 - heights[h]) / 6.0) - floor((-7.0 - heights[h]) / 6.0);
+        EXPECT(passed(0, 0) == crossed);
+        end();
+    }
+}
+
+/* A disc over the boundary of the direction across it counts on both sides. */
+TEST(a_disc_over_the_boundary)
+{
+    const struct job space = {.domain = {true, {0.0, 0.0, -1.0}, {4.0, 4.0, 1.0}, 3, 0}};
+    struct job_section disc = {.kind = JOB_SECTION_DISC,
+                               .point = {3.9, 0.1, 0.0},
+                               .normal = {0.0, 0.0, 1.0},
+                               .radius = 0.5};
+    const struct job one = {.n_sections = 1, .sections = &disc};
+    const double down[3] = {0.0, 0.0, -0.5};
+    sections_init(&sections, &one);
+    spheres_init(&spheres);
+    periodic_init(&spheres.periodic, &space);
+    fly_through(3.8, 0.2, down, 0.5);
+    fly_through(0.3, 0.2, down, 0.5);
+    fly_through(4.1, -0.3, down, 0.5); /* in memory beyond the boundary */
+    fly_through(3.8, 3.9, down, 0.5);
+    fly_through(0.5, 0.2, down, 0.5);
+    EXPECT(passed(0, 1) == 4.0);
+    end();
+}
+
 TEST(no_sections_no_work)
 {
     const struct job none = {.n_sections = 0};
