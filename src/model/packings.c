@@ -227,8 +227,7 @@ static void builder_init(struct builder *builder, const struct packings *packing
         avoid = avoid || (is_random(&packings->groups[g]) && job->spheres[g].avoid_bodies);
     }
     for (int b = 0; avoid && b < bodies->n; b++)
-        if (bodies->list[b].mesh.n_faces > 0)
-            builder->surfaces[b] = region_surface_build(&bodies->list[b].mesh);
+        builder->surfaces[b] = region_surface_build(&bodies->list[b].mesh);
     crowd_init(&builder->crowd, radius);
 }
 

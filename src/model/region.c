@@ -8,6 +8,10 @@
  * above or below x is a matter of rounding, and only where x is on the triangle: within any
  * margin of it.
  *
+ * A surface of revolution is looked at in the half-plane through its axis and x: distances are
+ * those to lines there, and inside is where a line straight away from the axis meets an odd
+ * number of them.
+ *
  * Triangles are listed in the cells of a grid that their boxes meet; a query costs the lists of
  * one column of cells from x upwards, and of those within the margin.
  */
@@ -29,6 +33,11 @@ struct triangle {
     struct vec3 low, high;  /* its box [m] */
 };
 
+/* A line in the half-plane, from one point to another [m]. */
+struct band {
+    double radius[2], height[2];
+};
+
 struct region_surface {
     int n;
     struct triangle *triangles;
@@ -36,6 +45,10 @@ struct region_surface {
     double cell;             /* edge of a cell [m] */
     int cells[3];
     int *begin, *list; /* triangles of cell c: list[begin[c]] .. list[begin[c + 1] - 1] */
+    /* A surface of revolution instead: its bands in the half-plane of an axis. */
+    int n_bands;
+    struct band *bands;
+    struct vec3 foot, axis; /* a point of the axis [m]; along it, of length 1 */
 };
 
 static double lesser(double a, double b)
@@ -132,11 +145,28 @@ static void build_cells(struct region_surface *s)
 
 /* ------------------------------------------------------------------------------- surfaces */
 
+/* Does every ring that is not a point of the axis join two bands? */
+static bool is_closed_round(const struct body *body, char **why)
+{
+    int n_open = 0;
+    for (int r = 0; r < body->mesh.n_rings; r++)
+        n_open += body->mesh.rings[r].radius > 0.0 && body->mesh.rings[r].bands[1] < 0;
+    if (n_open == 0)
+        return true;
+    *why =
+        array_format("'%s' is not closed: it has %d open rim%s; a body with a closed surface "
+                     "(caps: [...]) is expected",
+                     body->name, n_open, n_open == 1 ? "" : "s");
+    return false;
+}
+
 /* Is every edge met by faces that go along it as often one way as the other?  Says where it is
  * not. */
 static bool is_closed(const struct body *body, char **why)
 {
     const struct mesh *mesh = &body->mesh;
+    if (mesh->n_bands > 0)
+        return is_closed_round(body, why);
     int *faces = array_allocate((size_t)mesh->n_edges, sizeof *faces);
     int *turns = array_allocate((size_t)mesh->n_edges, sizeof *turns);
     int n_open = 0, n_turned = 0, example = -1;
@@ -182,9 +212,8 @@ static void add_triangle(struct region_surface *s, const struct mesh *mesh, int 
         box_add(&t->low, &t->high, t->corners[k]);
 }
 
-struct region_surface *region_surface_build(const struct mesh *mesh)
+static void build_triangles(struct region_surface *s, const struct mesh *mesh)
 {
-    struct region_surface *s = array_allocate(1, sizeof *s);
     s->triangles = array_allocate(2 * (size_t)mesh->n_faces, sizeof *s->triangles);
     for (int f = 0; f < mesh->n_faces; f++) {
         const int *v = mesh->faces[f].vertices;
@@ -192,16 +221,54 @@ struct region_surface *region_surface_build(const struct mesh *mesh)
         if (mesh->faces[f].n == 4)
             add_triangle(s, mesh, v[0], v[2], v[3]);
     }
-    for (int t = 0; t < s->n; t++) {
-        if (t == 0) {
-            s->origin = s->triangles[0].low;
-            s->end = s->triangles[0].high;
-        }
+    s->origin = s->triangles[0].low;
+    s->end = s->triangles[0].high;
+    for (int t = 1; t < s->n; t++) {
         box_add(&s->origin, &s->end, s->triangles[t].low);
         box_add(&s->origin, &s->end, s->triangles[t].high);
     }
     choose_cells(s);
     build_cells(s);
+}
+
+/* How far a circle of radius 1 about an axis reaches along x, y and z. */
+static struct vec3 circle_reach(struct vec3 axis)
+{
+    return (struct vec3){sqrt(greater(1.0 - axis.x * axis.x, 0.0)),
+                         sqrt(greater(1.0 - axis.y * axis.y, 0.0)),
+                         sqrt(greater(1.0 - axis.z * axis.z, 0.0))};
+}
+
+static void build_round(struct region_surface *s, const struct mesh *mesh)
+{
+    const struct vec3 top = mesh->reference[mesh->axis[1]];
+    s->foot = mesh->reference[mesh->axis[0]];
+    s->axis = vec3_sub(top, s->foot);
+    s->axis = vec3_scale(1.0 / vec3_norm(s->axis), s->axis);
+    const struct vec3 reach = circle_reach(s->axis);
+    s->n_bands = mesh->n_bands;
+    s->bands = array_allocate((size_t)mesh->n_bands, sizeof *s->bands);
+    for (int b = 0; b < mesh->n_bands; b++) {
+        for (int k = 0; k < 2; k++) {
+            const struct mesh_ring *ring = &mesh->rings[mesh->bands[b].rings[k]];
+            const struct vec3 centre = vec3_axpy(s->foot, ring->height, s->axis);
+            s->bands[b].radius[k] = ring->radius;
+            s->bands[b].height[k] = ring->height;
+            if (b == 0 && k == 0)
+                s->origin = s->end = centre;
+            box_add(&s->origin, &s->end, vec3_axpy(centre, -ring->radius, reach));
+            box_add(&s->origin, &s->end, vec3_axpy(centre, ring->radius, reach));
+        }
+    }
+}
+
+struct region_surface *region_surface_build(const struct mesh *mesh)
+{
+    struct region_surface *s = array_allocate(1, sizeof *s);
+    if (mesh->n_bands > 0)
+        build_round(s, mesh);
+    else if (mesh->n_faces > 0)
+        build_triangles(s, mesh);
     return s;
 }
 
@@ -211,6 +278,7 @@ void region_surface_destroy(struct region_surface *surface)
         free(surface->triangles);
         free(surface->begin);
         free(surface->list);
+        free(surface->bands);
     }
     free(surface);
 }
@@ -224,6 +292,10 @@ static double enclosed_volume(const struct region_surface *s, struct vec3 from)
         const struct vec3 b = vec3_sub(s->triangles[t].corners[1], from);
         const struct vec3 c = vec3_sub(s->triangles[t].corners[2], from);
         volume += vec3_dot(a, vec3_cross(b, c)) / 6.0;
+    }
+    for (int b = 0; b < s->n_bands; b++) { /* frustums */
+        const double *r = s->bands[b].radius, *h = s->bands[b].height;
+        volume += PI / 3.0 * (h[1] - h[0]) * (r[0] * r[0] + r[0] * r[1] + r[1] * r[1]);
     }
     return volume < 0.0 ? -volume : volume;
 }
@@ -259,10 +331,7 @@ static void build_cylinder(struct region *region, const struct job_region *asked
     region->volume = PI * asked->radius * asked->radius * region->length;
     region->low = region->high = asked->from;
     box_add(&region->low, &region->high, asked->to);
-    const struct vec3 a = region->axis;
-    const struct vec3 aside = {sqrt(greater(1.0 - a.x * a.x, 0.0)),
-                               sqrt(greater(1.0 - a.y * a.y, 0.0)),
-                               sqrt(greater(1.0 - a.z * a.z, 0.0))};
+    const struct vec3 aside = circle_reach(region->axis);
     region->low = vec3_axpy(region->low, -asked->radius, aside);
     region->high = vec3_axpy(region->high, asked->radius, aside);
 }
@@ -342,8 +411,33 @@ static double triangle_distance(const struct triangle *t, struct vec3 x)
     return over ? lesser(least, height * height / area) : least;
 }
 
+/* Where x is in the half-plane: distance from the axis (x), height along it (y). */
+static struct vec3 half_plane(const struct region_surface *s, struct vec3 x)
+{
+    const struct vec3 r = vec3_sub(x, s->foot);
+    const double height = vec3_dot(r, s->axis);
+    return (struct vec3){vec3_norm(vec3_axpy(r, -height, s->axis)), height, 0.0};
+}
+
+static struct vec3 band_end(const struct band *band, int k)
+{
+    return (struct vec3){band->radius[k], band->height[k], 0.0};
+}
+
+static bool is_near_band(const struct region_surface *s, struct vec3 x, double margin)
+{
+    const struct vec3 at = half_plane(s, x);
+    for (int b = 0; b < s->n_bands; b++)
+        if (segment_distance(at, band_end(&s->bands[b], 0), band_end(&s->bands[b], 1)) <
+            margin * margin)
+            return true;
+    return false;
+}
+
 bool region_surface_is_near(const struct region_surface *s, struct vec3 x, double margin)
 {
+    if (s->n_bands > 0 || s->n == 0)
+        return is_near_band(s, x, margin);
     const struct vec3 grow = {margin, margin, margin};
     const struct cells c = cells_of(s, vec3_sub(x, grow), vec3_add(x, grow));
     for (int i = c.low[0]; i <= c.high[0]; i++) {
@@ -386,8 +480,19 @@ static bool meets(const struct triangle *t, struct vec3 x, double *height)
     return true;
 }
 
+static bool is_within_bands(const struct region_surface *s, struct vec3 x)
+{
+    const struct vec3 at = half_plane(s, x);
+    bool odd = false;
+    for (int b = 0; b < s->n_bands; b++)
+        odd ^= crosses_right_of(band_end(&s->bands[b], 0), band_end(&s->bands[b], 1), at);
+    return odd;
+}
+
 static bool is_within(const struct region_surface *s, struct vec3 x)
 {
+    if (s->n_bands > 0)
+        return is_within_bands(s, x);
     const struct cells c = cells_of(s, x, x);
     bool odd = false;
     for (int k = c.low[2]; k < s->cells[2]; k++) {

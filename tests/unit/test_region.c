@@ -251,6 +251,32 @@ TEST(walls_of_a_hollow_body)
     end_body(&region);
 }
 
+/* A curved body is what the region of the same shape is, also slantwise. */
+TEST(inside_of_a_round_body)
+{
+    const struct vec3 from = {1, 1, 1}, to = {3, 3, 2};
+    struct region region, cylinder;
+    char *why;
+    begin_body((struct job_body){
+        .geometry = JOB_GEOMETRY_CYLINDER, .from = from, .to = to, .radius = 0.5, .caps = 3});
+    EXPECT(inside(&region, &why));
+    cylinder = simple((struct job_region){
+        .kind = JOB_REGION_CYLINDER, .from = from, .to = to, .radius = 0.5});
+    expect_volume(&region, 0.75 * PI);
+    for (uint64_t k = 0; k < POINTS; k++) {
+        const struct vec3 x = region_point(&cylinder, -0.1, 1, 2, k);
+        const double margin = 0.2 * random_unit(3, 3, k);
+        EXPECT(region_contains(&region, x, margin) == region_contains(&cylinder, x, margin));
+    }
+    end_body(&region);
+    begin_body((struct job_body){
+        .geometry = JOB_GEOMETRY_CYLINDER, .from = from, .to = to, .radius = 0.5, .caps = 1});
+    EXPECT(!inside(&region, &why));
+    EXPECT(strstr(why, "'shell' is not closed: it has 1 open rim;") != NULL);
+    free(why);
+    end_body(&region);
+}
+
 TEST(bodies_that_are_not_there)
 {
     const struct job_region asked = {.kind = JOB_REGION_INSIDE, .body = body_name};
