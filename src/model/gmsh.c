@@ -267,13 +267,15 @@ static int corners_of(int64_t type)
     return 0;
 }
 
-static bool refuse_order(struct reader *reader, int64_t type)
+static bool read_type(struct reader *reader, int64_t *type)
 {
-    return scan_complain(
-        &reader->scan,
-        "elements of type %lld, which are curved; triangles and quads of first "
-        "order (gmsh -order 1) are expected",
-        (long long)type);
+    if (!scan_whole(&reader->scan, 1, 1000, type, "the type of an element"))
+        return false;
+    return corners_of(*type) >= 0 ||
+           scan_complain(&reader->scan,
+                         "elements of type %lld, which are curved; triangles and quads of "
+                         "first order (gmsh -order 1) are expected",
+                         (long long)*type);
 }
 
 /* The corners of an element that is in the group. */
@@ -307,8 +309,7 @@ static bool read_element_22(struct reader *reader)
 {
     struct scan *scan = &reader->scan;
     int64_t number, type, n_tags, tag, physical = 0;
-    if (!read_any(reader, &number) ||
-        !scan_whole(scan, 1, 1000, &type, "the type of an element") ||
+    if (!read_any(reader, &number) || !read_type(reader, &type) ||
         !scan_whole(scan, 0, 100000, &n_tags, "the number of the element's tags"))
         return false;
     for (int64_t k = 0; k < n_tags; k++) {
@@ -319,8 +320,6 @@ static bool read_element_22(struct reader *reader)
     if (physical < 0 && physical > -INT64_MAX) /* looks the other way: no matter */
         physical = -physical;
     const int n = corners_of(type);
-    if (n < 0)
-        return refuse_order(reader, type);
     reader->n_surface_elements += n > 0;
     if (n == 0 || (reader->group != NULL && physical != reader->physical)) {
         scan_skip_line(scan);
@@ -343,13 +342,10 @@ static bool read_element_block(struct reader *reader)
     struct scan *scan = &reader->scan;
     int64_t dimension, entity, type, n_elements, number;
     if (!scan_whole(scan, 0, 3, &dimension, "a dimension, 0 to 3,") ||
-        !read_any(reader, &entity) ||
-        !scan_whole(scan, 1, 1000, &type, "the type of an element") ||
+        !read_any(reader, &entity) || !read_type(reader, &type) ||
         !read_count(reader, &n_elements))
         return false;
     const int n = corners_of(type);
-    if (n < 0)
-        return refuse_order(reader, type);
     const bool taken = n > 0 && is_chosen(reader, entity);
     reader->n_surface_elements += n > 0 ? n_elements : 0;
     for (int64_t k = 0; k < n_elements; k++) {

@@ -113,7 +113,7 @@ static bool read_facet(struct scan *scan, struct surface *surface)
         }
         corners[k] = surface_add_vertex(surface, (struct vec3){x[0], x[1], x[2]});
     }
-    if (!scan_expect(scan, "endloop", "'endloop': facets are triangles; it") ||
+    if (!scan_expect(scan, "endloop", "'endloop' after three vertices") ||
         !scan_expect(scan, "endfacet", "'endfacet'"))
         return false;
     if (surface->n_facets == SURFACE_FACETS_MOST)

@@ -11,8 +11,9 @@
 #include "model/body.h"
 #include "model/sphere.h"
 
-/* A drawing wider than this many radii is probably in other units. */
-static const double WIDE = 2e4;
+/* A drawing wider than this many radii is probably in other units; or one that is wider than
+ * this many clouds of spheres, and not small beside a sphere. */
+static const double WIDE = 2e4, WIDE_BESIDE_CLOUD = 200.0, NOT_SMALL = 1e3;
 
 enum { PLACE = 96, NAME = 300 };
 
@@ -121,40 +122,54 @@ static void warn_of_edges(const struct job_body *body, const struct mesh *mesh,
                     place_of(mesh, survey->first_turned, place));
 }
 
+/* The spheres of all ranks in short; the largest radius is 0 where there are none. */
+struct cloud {
+    double least, most; /* radii [m] */
+    double width;       /* largest side of the box around them [m] */
+};
+
+static struct cloud find_cloud(const struct spheres *spheres, const struct comm *comm)
+{
+    double high[3] = {-1e300, -1e300, -1e300},
+           low[3] = {-1e300, -1e300, -1e300}; /* low: minus */
+    double radii[2] = {-1e300, 0.0};          /* minus the least, the largest */
+    for (int i = 0; i < spheres->n_owned; i++) {
+        const double radius = sphere_radius(spheres, i), *x = sphere_position(spheres, i);
+        radii[0] = -radius > radii[0] ? -radius : radii[0];
+        radii[1] = radius > radii[1] ? radius : radii[1];
+        for (int k = 0; k < 3; k++) {
+            high[k] = x[k] + radius > high[k] ? x[k] + radius : high[k];
+            low[k] = radius - x[k] > low[k] ? radius - x[k] : low[k];
+        }
+    }
+    comm_max(comm, radii, 2);
+    comm_max(comm, high, 3);
+    comm_max(comm, low, 3);
+    struct cloud cloud = {-radii[0], radii[1], 0.0};
+    for (int k = 0; k < 3; k++)
+        cloud.width = high[k] + low[k] > cloud.width ? high[k] + low[k] : cloud.width;
+    return cloud;
+}
+
 static void warn_of_units(const struct job_body *body, const struct mesh_survey *survey,
-                          double least, double most)
+                          const struct cloud *cloud)
 {
     char name[NAME];
     const double side = largest_side(survey);
-    if (side > WIDE * most)
+    if (side > WIDE * cloud->most ||
+        (side > WIDE_BESIDE_CLOUD * cloud->width && side > NOT_SMALL * cloud->most))
         report_warn("%s: is %.3g m wide, %.2g radii of the largest sphere; a file in mm takes "
                     "scale: 0.001",
-                    name_of(body, name), side, side / most);
-    else if (side < 2.0 * least)
+                    name_of(body, name), side, side / cloud->most);
+    else if (side < 2.0 * cloud->least)
         report_warn("%s: is %.3g m wide, less than the smallest sphere; is its scale right?",
                     name_of(body, name), side);
-}
-
-/* Least and largest radius of all ranks' spheres; the largest is 0 where there are none [m]. */
-static void find_radii(const struct spheres *spheres, const struct comm *comm, double *least,
-                       double *most)
-{
-    *least = 1e300;
-    *most = 0.0;
-    for (int i = 0; i < spheres->n_owned; i++) {
-        const double radius = sphere_radius(spheres, i);
-        *least = radius < *least ? radius : *least;
-        *most = radius > *most ? radius : *most;
-    }
-    comm_min(comm, least, 1);
-    comm_max(comm, most, 1);
 }
 
 void survey_warn(const struct job *job, const struct bodies *bodies,
                  const struct spheres *spheres, const struct comm *comm)
 {
-    double least, most;
-    find_radii(spheres, comm, &least, &most);
+    const struct cloud cloud = find_cloud(spheres, comm);
     for (int b = 0; b < bodies->n && comm->rank == 0; b++) {
         const struct mesh *mesh = &bodies->list[b].mesh;
         if (!is_drawn(&job->bodies[b]))
@@ -162,7 +177,7 @@ void survey_warn(const struct job *job, const struct bodies *bodies,
         const struct mesh_survey survey = mesh_survey(mesh);
         warn_of_facets(&job->bodies[b], mesh);
         warn_of_edges(&job->bodies[b], mesh, &survey);
-        if (most > 0.0)
-            warn_of_units(&job->bodies[b], &survey, least, most);
+        if (cloud.most > 0.0)
+            warn_of_units(&job->bodies[b], &survey, &cloud);
     }
 }

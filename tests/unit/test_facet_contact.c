@@ -803,6 +803,72 @@ TEST(an_elastic_impact_on_a_plane_is_hertz)
     scene_clear(&scene);
 }
 
+/* ---- Curved surfaces
+ * -------------------------------------------------------------------------- */
+
+static const double PI = 3.14159265358979323846;
+static const double DRUM = 1.0, BALL = 0.1, DEPTH = 0.002; /* [m] */
+
+/* Rolls a sphere once around inside a drum, at a fixed distance from the axis; *least and *most
+ * become the extremes of the force towards the axis, *slip the largest along the wall. */
+static void roll_around(int segments, double *least, double *most, double *slip)
+{
+    const struct job_material ore = {.density = 2400.0, .young = 5e7, .poisson = 0.25};
+    struct job_body drum = {.name = NAME,
+                            .geometry = JOB_GEOMETRY_CYLINDER,
+                            .from = {0.0, 0.0, -1.0},
+                            .to = {0.0, 0.0, 1.0},
+                            .radius = DRUM,
+                            .segments = segments};
+    struct scene scene;
+    scene_build(&scene, ore, 0.5, 1.0, 1, &drum, 1, BALL);
+    const double out = DRUM - BALL + DEPTH, speed = 1.0; /* [m], [m/s] */
+    const int n = 20011;
+    scene.dt = 2.0 * PI * out / speed / (double)n;
+    *least = 1e300;
+    *most = *slip = 0.0;
+    for (int k = 0; k < n; k++) {
+        const double angle = 2.0 * PI * ((double)k + 0.3) / (double)n;
+        const struct vec3 arm = {cos(angle), sin(angle), 0.0}, along = {-arm.y, arm.x, 0.0};
+        /* Rolls without slip. */
+        put_sphere(&scene, 0, vec3_scale(out, arm), vec3_scale(speed, along),
+                   (struct vec3){0.0, 0.0, -speed / BALL});
+        if (k % 50 == 0) {
+            scene.spheres.allowance[0] = 0.1;
+            search(&scene, false);
+        }
+        apply(&scene);
+        const double *force = scene.spheres.force[0].lane;
+        const struct vec3 f = {force[0], force[1], force[2]};
+        const double size = -vec3_dot(f, arm),
+                     grip = vec3_norm(vec3_axpy(f, -vec3_dot(f, arm), arm));
+        *least = size < *least ? size : *least;
+        *most = size > *most ? size : *most;
+        *slip = grip > *slip ? grip : *slip;
+    }
+    EXPECT(scene.facets.n >= 1);
+    scene_clear(&scene);
+}
+
+TEST(a_sphere_rolls_in_a_curved_drum_without_a_ripple_and_in_facets_with_that_of_their_sagitta)
+{
+    const double effective = 5e7 / (1.0 - 0.25 * 0.25) / 2.0; /* both are of ore */
+    const double hertz = 4.0 / 3.0 * effective * sqrt(BALL) * DEPTH * sqrt(DEPTH);
+    double least, most, slip;
+    roll_around(0, &least, &most, &slip);
+    EXPECT_NEAR(least, hertz, 1e-9 * hertz);
+    EXPECT_NEAR(most, hertz, 1e-9 * hertz);
+    EXPECT(slip < 1e-9 * hertz); /* nothing drags at it: friction could hold half of hertz */
+    for (int n = 64; n <= 1024; n *= 4) {
+        roll_around(n, &least, &most, &slip);
+        /* From the circle of corners to the middle of a facet (THEORY.md 2.4). */
+        const double sagitta = DRUM * (1.0 - cos(PI / (double)n));
+        const double deepest = (DEPTH + sagitta) / DEPTH;
+        EXPECT_NEAR(most, hertz * deepest * sqrt(deepest), 0.02 * (most - hertz));
+        EXPECT(least > hertz * (1.0 - 1e-9) && least < hertz + 0.25 * (most - hertz));
+    }
+}
+
 int main(int argc, char **argv)
 {
     return check_run(argc, argv);
