@@ -90,4 +90,4 @@ warned()
 warned "a border" "body 'plate', plate.msh: 4 open edges, the first at "
 sed -i 's/scale: 0.001, //' round.yaml
 sed -i 's/time: {end: 0.5/domain: {min: [-2000, -2000, -2000], max: [2000, 2000, 2000]}\ntime: {end: 0.5/' round.yaml
-warned "a file in mm" "body 'wedge', wedge.stl: is 260 m wide, 5.2e+03 radii"
+warned "a file in mm" "body 'wedge', wedge.stl: is 360 m wide, 7.2e+03 radii"
