@@ -13,6 +13,7 @@
 #include "base/comm.h"
 #include "base/report.h"
 #include "job/job.h"
+#include "run/check.h"
 #include "run/simulation.h"
 #include "run/step.h"
 
@@ -43,6 +44,8 @@ static bool is_met(double error, double expected, double tolerance, enum verify_
     switch (kind) {
     case VERIFY_AT_MOST:
         return error <= tolerance;
+    case VERIFY_AT_LEAST:
+        return error >= -tolerance;
     case VERIFY_RELATIVE:
         return fabs(error) <= tolerance * fabs(expected);
     case VERIFY_ABSOLUTE:
@@ -51,13 +54,19 @@ static bool is_met(double error, double expected, double tolerance, enum verify_
     }
 }
 
+/* What stands before an expected value that is a limit. */
+static const char *limit_word(enum verify_kind kind)
+{
+    return kind == VERIFY_AT_MOST ? "at most " : kind == VERIFY_AT_LEAST ? "at least " : "";
+}
+
 /* Error and tolerance as people read them: shares as such, else in the quantity's unit. */
 static void print_table_line(const char *quantity, const char *unit, double expected,
                              double measured, double tolerance, enum verify_kind kind,
                              const char *why, bool met)
 {
     const double error = measured - expected;
-    const char *limit = kind == VERIFY_AT_MOST ? "at most " : "";
+    const char *limit = limit_word(kind);
     const char *space = unit[0] != '\0' ? " " : "", *of = "";
     double shown = error;
     if (kind == VERIFY_RELATIVE) {
@@ -81,7 +90,7 @@ void verify_row(const char *quantity, const char *unit, double expected, double 
         printf("ok %s\n", quantity);
     else
         printf("FAIL %s: measured %.10g %s, expected %s%.10g, tolerance %.3g%s\n", quantity,
-               measured, unit, kind == VERIFY_AT_MOST ? "at most " : "", expected, tolerance,
+               measured, unit, limit_word(kind), expected, tolerance,
                kind == VERIFY_RELATIVE ? " of it" : "");
     fflush(stdout);
 }
@@ -101,6 +110,30 @@ struct scene {
     struct job job;
 };
 
+/* Reads a job, and completes it where that is asked for. */
+static void read_job(struct job *job, const char *text, bool complete)
+{
+    struct mistakes mistakes;
+    mistakes_init(&mistakes);
+    if (!job_read_text(job, "verification.yaml", text, &mistakes) ||
+        (complete && !check_complete(job, 1, &mistakes))) {
+        mistakes_print(&mistakes);
+        CHECK(false, "the job of '%s' is not valid", verify.title);
+    }
+    mistakes_clear(&mistakes);
+}
+
+double verify_automatic_step(const char *yaml)
+{
+    char *text = array_format("time: {end: 1, step: auto}\n%s", yaml);
+    struct job job;
+    read_job(&job, text, true);
+    const double step = job.time.step;
+    job_clear(&job);
+    free(text);
+    return step;
+}
+
 struct simulation *verify_scene(double dt, const char *yaml_format, ...)
 {
     char *rest = NULL;
@@ -110,13 +143,7 @@ struct simulation *verify_scene(double dt, const char *yaml_format, ...)
     va_end(arguments);
     char *text = array_format("time: {end: %.17g, step: %.17g}\n%s", 1e12 * dt, dt, rest);
     struct scene *scene = array_allocate(1, sizeof *scene);
-    struct mistakes mistakes;
-    mistakes_init(&mistakes);
-    if (!job_read_text(&scene->job, "verification.yaml", text, &mistakes)) {
-        mistakes_print(&mistakes);
-        CHECK(false, "the job of '%s' is not valid", verify.title);
-    }
-    mistakes_clear(&mistakes);
+    read_job(&scene->job, text, false);
     simulation_create(&scene->sim, &verify.comm, &scene->job, PAIR_KERNEL_AUTO);
     free(rest);
     free(text);
@@ -149,7 +176,12 @@ void verify_steps(struct simulation *sim, int64_t n)
         step(sim);
         if (sim->watch.failure != WATCH_FINE) {
             watch_explain(&sim->watch, sim);
-            CHECK(false, "a scene of '%s' fails", verify.title);
+            fprintf(stderr, "that was a scene of '%s', after %d rows\n", verify.title,
+                    verify.n_rows);
+            printf("FAIL %s: a run stops at step %lld of %g s, see what was said\n",
+                   verify.title, (long long)sim->step, sim->dt);
+            COMM_CHECK(MPI_Finalize());
+            exit(1);
         }
     }
 }

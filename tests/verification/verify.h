@@ -25,6 +25,7 @@ enum verify_kind {
     VERIFY_RELATIVE, /* |measured - expected| <= tolerance |expected| */
     VERIFY_ABSOLUTE, /* |measured - expected| <= tolerance */
     VERIFY_AT_MOST,  /* measured <= expected + tolerance */
+    VERIFY_AT_LEAST, /* measured >= expected - tolerance */
 };
 
 /* Starts MPI and the case. */
@@ -42,12 +43,14 @@ int verify_end(void);
 struct simulation *verify_scene(double dt, const char *yaml_format, ...)
     __attribute__((format(printf, 2, 3)));
 void verify_scene_free(struct simulation *sim);
+/* The step that `step: auto` takes for the same text, as runs of the program get it [s]. */
+double verify_automatic_step(const char *yaml);
 
 /* An entry of the job's list `spheres`: one sphere.  The caller frees it. */
 char *verify_sphere(const char *name, const char *material, double radius, struct vec3 position,
                     struct vec3 velocity, struct vec3 spin);
 
-/* n steps; a failure that would stop a run stops the case. */
+/* n steps; a failure that would stop a run ends the case as not met. */
 void verify_steps(struct simulation *sim, int64_t n);
 
 /* Sphere by id: place at the step [m], velocity [m/s] and angular velocity [rad/s] half a step
