@@ -134,8 +134,7 @@ static double pair_gain(const struct two *two)
         for (int degrees = FIRST_ANGLE; degrees < 90; degrees += ANGLES_APART) {
             const double share = cos(degrees * DEGREE) * cos(degrees * DEGREE);
             for (int f = 0; f < N_FRICTIONS; f++) {
-                const double gain =
-                    gain_of(two, frictions[f], degrees, phase) - share * normal;
+                const double gain = gain_of(two, frictions[f], degrees, phase) - share * normal;
                 most = gain > most ? gain : most;
             }
         }
