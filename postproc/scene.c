@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "base/comm.h"
 #include "base/report.h"
+#include "store/body_notes.h"
 #include "store/file.h"
 #include "store/surface_file.h"
 
@@ -44,6 +45,7 @@ static void read_job(struct scene *scene, const char *path)
     if (scene->has_job) {
         read_surfaces(&scene->job);
         bodies_build(&scene->bodies, &scene->job);
+        (void)body_notes_take(&scene->checkpoint.notes, &scene->bodies);
         bodies_place(&scene->bodies, scene->checkpoint.step, scene->checkpoint.dt);
     } else {
         mistakes_print(&mistakes);

@@ -19,6 +19,7 @@
 #include "contact/facet_tree.h"
 #include "model/body.h"
 #include "model/material.h"
+#include "model/rigid.h"
 #include "model/sphere.h"
 #include "physics/contact_geometry.h"
 #include "physics/contact_law.h"
@@ -465,6 +466,8 @@ static void add_contact(const struct step *step, int entry, const struct contact
     batch->overlap[k] = overlap;
     batch->inverse_radius[k] = spin[3];
     batch->inverse_mass[k] = spin[7];
+    if (body->rigid != NULL)
+        batch->inverse_mass[k] += rigid_yield(body->rigid, at->point, normal);
     batch->pair[k] = pair;
     for (int h = 0; h < CONTACT_LANES; h++)
         if (contact_lane_used(h, step->materials->full, step->ledger))
@@ -472,6 +475,20 @@ static void add_contact(const struct step *step, int entry, const struct contact
     const double relative = overlap * spin[3];
     if (relative > step->facets->overlap_max)
         step->facets->overlap_max = relative;
+}
+
+/* What a body that is not there still holds ends. */
+static void end_group(const struct step *step, int begin, int end)
+{
+    for (int k = begin; k < end; k++) {
+        const struct facet_contact *contact = &step->facets->list[k];
+        if (!holds_history(contact))
+            continue;
+        const struct mesh *mesh = &step->bodies->list[contact->body].mesh;
+        const struct contact_geometry at = contact_geometry_closest(
+            mesh, contact->feature, vec3_of(sphere_position(step->spheres, contact->sphere)));
+        add_contact(step, k, &at, 0.0);
+    }
 }
 
 /* The contacts of one sphere with one body: entries begin to end. */
@@ -525,7 +542,9 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
         for (end = k + 1; end < facets->n; end++)
             if (list[end].sphere != list[k].sphere || list[end].body != list[k].body)
                 break;
-        if (end == k + 1)
+        if (!bodies->list[list[k].body].exists)
+            end_group(&step, k, end);
+        else if (end == k + 1)
             gather_one(&step, k);
         else
             gather_group(&step, k, end);
@@ -534,6 +553,41 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
     for (int b = 0; b < facets->n_bodies; b++)
         if (facets->work->loads[b].force.n_terms > 0)
             merge_loads(facets, b);
+}
+
+/* What the contact across a surface that goes stores half a step before: that is what is lost
+ * with it, between the last step with it and the first without. (7.4) */
+static double held_energy(const struct spheres *spheres, const struct body *body,
+                          const struct facet_contact *contact, const struct material_pair *pair,
+                          double dt)
+{
+    const double none[CONTACT_LANES] = {0.0};
+    const int i = contact->sphere;
+    const struct vec3 centre = vec3_of(sphere_position(spheres, i));
+    const struct vec3 drift =
+        vec3_sub(vec3_of(sphere_velocity(spheres, i)), wall_velocity(body, centre));
+    const struct contact_geometry at = contact_geometry_closest(
+        &body->mesh, contact->feature, vec3_axpy(centre, -0.5 * dt, drift));
+    const double overlap = sphere_radius(spheres, i) - at.distance;
+    if (!(overlap > 0.0))
+        return 0.0;
+    return contact_law_elastic_energy(overlap, spheres->spin[i].lane[3], pair, none);
+}
+
+void facet_contacts_held(const struct facet_contacts *facets, const struct spheres *spheres,
+                         const struct bodies *bodies, const struct materials *materials,
+                         double dt, struct exact_sum *sum)
+{
+    for (int k = 0; k < facets->n; k++) {
+        const struct facet_contact *contact = &facets->list[k];
+        const struct body *body = &bodies->list[contact->body];
+        const int material = spheres->material[contact->sphere];
+        if (!body->exists && holds_history(contact))
+            exact_sum_add(
+                sum,
+                held_energy(spheres, body, contact,
+                            &materials->pairs[material * materials->n + body->material], dt));
+    }
 }
 
 void facet_contacts_elastic_energy(const struct facet_contacts *facets,

@@ -103,6 +103,12 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
                           const struct bodies *bodies, const struct materials *materials,
                           double dt, bool ledger);
 
+/* Energy that contacts with bodies that exist no more held across them, before
+ * facet_contacts_apply() ends these; added to `sum`. Local. */
+void facet_contacts_held(const struct facet_contacts *facets, const struct spheres *spheres,
+                         const struct bodies *bodies, const struct materials *materials,
+                         double dt, struct exact_sum *sum);
+
 /* Elastic energy stored in facet contacts, added to `sum` (each once, by the sphere's owner),
  * as of the last facet_contacts_apply(). Local. */
 void facet_contacts_elastic_energy(const struct facet_contacts *facets,

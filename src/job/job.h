@@ -151,9 +151,9 @@ struct job_path_point {
     double angle;      /* about the path's axis [rad]; likewise */
 };
 
-/* One motion, while it lasts: X -> pivot + Q(angle) (X - pivot) + shift, where the shift is that
- * of velocity, oscillation and path together and the angle that of one of rotation, swing and
- * path (THEORY 3). */
+/* One motion, while it lasts: X -> pivot + Q(angle) (X - pivot) + shift, where the shift is
+ * that of velocity, oscillation and path together and the angle that of one of rotation, swing
+ * and path (THEORY.md, section 3). */
 struct job_motion {
     struct vec3 velocity;    /* [m/s] */
     struct vec3 pivot, axis; /* axis has length 1, or 0 where nothing rotates */
@@ -211,7 +211,7 @@ struct job_free {
 
 enum { JOB_FORCED_MOST = 300 }; /* bodies that forces move, in one job */
 
-/* A rigid body: a surface of quads and triangles, at rest, moving as prescribed or by forces. */
+/* A rigid body: a surface of quads and triangles, at rest, moved as prescribed or by forces. */
 struct job_body {
     char *name;
     int material;
@@ -251,6 +251,12 @@ struct job_body {
     struct job_free free;
     bool comes_and_goes;
     double active[2]; /* then: when it comes and when it goes [s] */
+};
+
+/* A part of space with damping of its own, besides the job's. */
+struct job_damping_region {
+    struct job_region region;
+    double damping; /* [1/s] */
 };
 
 /* Gravity at a time, between which it changes linearly. */
@@ -349,6 +355,8 @@ struct job {
     } gravity_turn;
     int n_gravity_table;
     struct job_gravity *gravity_table;
+    int n_damping_regions;
+    struct job_damping_region *damping_regions;
     double damping; /* mass-proportional: force = -damping * m * v [1/s] */
     int n_materials, n_pairs, n_spheres, n_bodies, n_sections;
     int n_contents, n_insertions, n_removals;

@@ -598,6 +598,13 @@ static void forced_check(const struct check *check, const struct job_body *body,
         !(limits[0] <= 0.0 && limits[1] >= 0.0 && limits[0] < limits[1]))
         mistake(check, path,
                 "does not ascend from 0 or less to 0 or more; 0 is where the body starts");
+    const bool waits =
+        (driven->given && driven->start > 0.0) || (body->free.given && body->free.start > 0.0);
+    const bool runs = driven->speed != 0.0 || driven->rate != 0.0 ||
+                      vec3_norm(body->free.velocity) > 0.0 || vec3_norm(body->free.spin) > 0.0;
+    PATH("bodies.%d.%s.start", i, driven->given ? "driven" : "free");
+    if (waits && runs)
+        mistake(check, path, "holds a body that has a speed at the start; none is expected");
     if (body->free.given)
         free_check(check, &body->free, i);
 }
@@ -932,6 +939,12 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     contents_check(&check);
     sections_check(&check);
     gravity_check(&check);
+    for (int r = 0; r < job->n_damping_regions; r++) {
+        char path[64];
+        PATH("damping_regions.%d.region", r);
+        if (is_clean(&check, path))
+            region_check(&check, path, &job->damping_regions[r].region);
+    }
     domain_check(&check);
     periods_check(&check);
     pairs_check(&check, falling, standing);

@@ -542,6 +542,13 @@ static const struct schema_key body_keys[] = {
      AT(struct job_body, active)},
     END};
 
+static const struct schema_key damping_region_keys[] = {
+    {"region", SCHEMA_GROUP, "where: of spheres whose centres are there", .required = true,
+     REGION_AT(struct job_damping_region, region)},
+    {"damping", SCHEMA_NUMBER, "there, besides `damping`", .unit = "1/s", .required = true,
+     BETWEEN(0.0, 1e9), AT(struct job_damping_region, damping)},
+    END};
+
 static const struct schema_key gravity_turn_keys[] = {
     {"axis", SCHEMA_DIRECTION, "about which gravity turns; the right hand's thumb",
      .required = true, AT(struct job, gravity_turn.axis)},
@@ -792,6 +799,9 @@ const struct schema_key job_keys[] = {
      "mass-proportional damping: a force of -damping x mass x velocity on every sphere, and "
      "a moment likewise",
      .unit = "1/s", .standard = "0", BETWEEN(0.0, 1e9), AT(struct job, damping)},
+    {"damping_regions", SCHEMA_LIST, "parts of space with damping of their own", UP_TO(100.0),
+     .inside = damping_region_keys, GIVEN(struct job, n_damping_regions),
+     LIST_AT(struct job, damping_regions, n_damping_regions)},
     {"materials", SCHEMA_NAMED, "materials by name; those that nothing uses are left out",
      .required = true, UP_TO(1000.0), .inside = material_keys,
      LIST_AT(struct job, materials, n_materials)},

@@ -1,6 +1,6 @@
 /*
- * Tabulated paths of bodies from CSV files: read once, with the job, into the list of points that
- * the job could also have held itself; so a run needs the file no more.
+ * Tabulated paths of bodies from CSV files: read once, with the job, into the list of points
+ * that the job could also have held itself; so a run needs the file no more.
  */
 #ifndef TREMIE_JOB_PATH_FILE_H
 #define TREMIE_JOB_PATH_FILE_H

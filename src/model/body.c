@@ -45,7 +45,7 @@ static void place_vertices(struct body *body, double time)
     mesh_update(mesh);
 }
 
-/* Velocities of all motions together, half a step before `time`.                          (3.2) */
+/* Velocities of all motions together, half a step before `time`. (3.2) */
 static void find_motion(struct body *body, double time, double half, double dt)
 {
     struct vec3 point = ZERO, velocity = ZERO, spin = ZERO;

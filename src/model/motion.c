@@ -1,7 +1,7 @@
 /*
- * See motion.h.  Oscillations have the mean velocity of a step in closed form, so neither it nor
- * the place loses digits however long the run is; paths that bend within a step have the mean
- * of their pieces.
+ * See motion.h.  Oscillations have the mean velocity of a step in closed form, so neither it
+ * nor the place loses digits however long the run is; paths that bend within a step have the
+ * mean of their pieces.
  */
 #include "model/motion.h"
 
@@ -49,15 +49,15 @@ double motion_duration(const struct job_motion *motion, double time)
     return until > motion->start ? until - motion->start : 0.0;
 }
 
-/* ------------------------------------------------------------------------------ oscillation */
+/* ----------------------------------------------------------------------------- oscillation */
 
-/* sin(2 pi f t + phase) - sin(phase)                                                      (3.3) */
+/* sin(2 pi f t + phase) - sin(phase) (3.3) */
 static double wave(double frequency, double phase, double t)
 {
     return elementary_sin(TWO_PI * frequency * t + phase) - elementary_sin(phase);
 }
 
-/* Its mean rate of change between two times of the motion, over dt [1/s]                  (3.4) */
+/* Its mean rate of change between two times of the motion, over dt [1/s] (3.4) */
 static double wave_rate(double frequency, double phase, double from, double to, double dt)
 {
     const double middle = TWO_PI * frequency * (0.5 * (from + to)) + phase;
@@ -65,7 +65,7 @@ static double wave_rate(double frequency, double phase, double from, double to, 
     return 2.0 * elementary_sin(half) * elementary_cos(middle) / dt;
 }
 
-/* ------------------------------------------------------------------------------------- path */
+/* ------------------------------------------------------------------------------- path */
 
 /* The piece of the path in which a time lies: its first point; the first or last piece where it
  * lies before or behind all. */
@@ -107,7 +107,7 @@ static struct job_path_point path_slope(const struct job_path_point *points, int
 }
 
 /* Mean velocity and rate over dt between two times of the motion: that of the piece in which
- * both lie, else the mean of the pieces between.                                          (3.5) */
+ * both lie, else the mean of the pieces between. (3.5) */
 static struct job_path_point path_rate(const struct job_motion *motion, double from, double to,
                                        double dt)
 {
@@ -131,7 +131,7 @@ static struct job_path_point path_rate(const struct job_motion *motion, double f
     return mean;
 }
 
-/* ---------------------------------------------------------------------------------- together */
+/* ------------------------------------------------------------------------------- together */
 
 struct motion_place motion_place(const struct job_motion *motion, double time)
 {
@@ -186,7 +186,7 @@ struct motion_rate motion_rate(const struct job_motion *motion, double half, dou
     return rate;
 }
 
-/* r turned by an angle about an axis of length 1 (Rodrigues).                             (3.1) */
+/* r turned by an angle about an axis of length 1 (Rodrigues). (3.1) */
 struct vec3 motion_turn(const struct motion_place *place, struct vec3 r)
 {
     const struct vec3 along =
@@ -202,7 +202,7 @@ struct vec3 motion_apply(const struct motion_place *place, struct vec3 x)
     return vec3_add(x, place->shift);
 }
 
-/* ------------------------------------------------------------------------------------ bounds */
+/* ------------------------------------------------------------------------------- bounds */
 
 /* The largest slope of the path, as a speed or as a rate. */
 static double steepest(const struct job_motion *motion, bool angle)

@@ -28,7 +28,7 @@ static double size_of(double x)
     return x < 0.0 ? -x : x;
 }
 
-/* ----------------------------------------------------------------------------------- tensors */
+/* ------------------------------------------------------------------------------- tensors */
 
 /* Symmetric: xx, yy, zz, xy, xz, yz. */
 static struct vec3 tensor_apply(const double m[6], struct vec3 v)
@@ -65,14 +65,14 @@ static struct vec3 to_body(const double frame[3][3], struct vec3 v)
                          frame[0][2] * v.x + frame[1][2] * v.y + frame[2][2] * v.z};
 }
 
-/* I^-1 L in space.                                                                        (10.4) */
+/* I^-1 L in space. (10.4) */
 static struct vec3 spin_of(const struct rigid *rigid, const double frame[3][3],
                            struct vec3 momentum)
 {
     return to_space(frame, tensor_apply(rigid->inverse, to_body(frame, momentum)));
 }
 
-/* ------------------------------------------------------------------------------- quaternions */
+/* ----------------------------------------------------------------------------- quaternions */
 
 static void normalise(double q[4])
 {
@@ -81,7 +81,7 @@ static void normalise(double q[4])
         q[k] *= per;
 }
 
-/* q turned by the small rotation (1, h), normalised: by 2 atan |h| about h.               (10.5) */
+/* q turned by the small rotation (1, h), normalised: by 2 atan |h| about h. (10.5) */
 static void turn_by(double turned[4], const double q[4], struct vec3 h)
 {
     turned[0] = q[0] - h.x * q[1] - h.y * q[2] - h.z * q[3];
@@ -101,7 +101,7 @@ static void frame_of(double frame[3][3], const double q[4])
     memcpy(frame, m, sizeof m);
 }
 
-/* -------------------------------------------------------------------------- mass of a surface */
+/* ----------------------------------------------------------------------- mass of a surface */
 
 struct moments {
     double volume;     /* [m3] */
@@ -161,6 +161,8 @@ const char *rigid_fault(const struct job_body *asked, const struct mesh *mesh)
 {
     if (!asked->free.given || !(asked->free.density > 0.0))
         return NULL;
+    if (mesh->n_bands > 0)
+        return "is curved, of which the mass is not known";
     int *passes = array_allocate(2 * (size_t)mesh->n_edges, sizeof *passes);
     bool closed = true;
     for (int f = 0; f < mesh->n_faces; f++) {
@@ -174,11 +176,11 @@ const char *rigid_fault(const struct job_body *asked, const struct mesh *mesh)
         closed = closed && passes[e] == 1;
     free(passes);
     if (!closed)
-        return "is not closed, or its facets do not all face the same way";
+        return "is open, or its facets do not all face the same way";
     return moments_of(mesh).volume == 0.0 ? "encloses nothing" : NULL;
 }
 
-/* ------------------------------------------------------------------------------------- start */
+/* ------------------------------------------------------------------------------- start */
 
 static void build_driven(struct rigid *rigid, const struct job_driven *asked)
 {
@@ -242,7 +244,7 @@ void rigid_build(struct rigid *rigid, const struct job_body *asked, const struct
     rigid_refresh(rigid);
 }
 
-/* ------------------------------------------------------------------------------------- place */
+/* ------------------------------------------------------------------------------- place */
 
 void rigid_refresh(struct rigid *rigid)
 {
@@ -300,7 +302,7 @@ double rigid_speed(const struct rigid *rigid)
     return vec3_norm(state->velocity) + vec3_norm(state->spin) * rigid->arm;
 }
 
-/* ------------------------------------------------------------------------------------- yield */
+/* ------------------------------------------------------------------------------- yield */
 
 double rigid_yield(const struct rigid *rigid, struct vec3 point, struct vec3 along)
 {
@@ -331,9 +333,9 @@ double rigid_yield_most(const struct rigid *rigid, struct vec3 point)
     return 1.0 / rigid->mass + vec3_dot(arm, arm) * trace;
 }
 
-/* -------------------------------------------------------------------------------------- step */
+/* ------------------------------------------------------------------------------- step */
 
-/* The two factors of damping.                                                             (5.3) */
+/* The two factors of damping. (5.3) */
 static double keep_of(double damping, double dt)
 {
     return (1.0 - 0.5 * damping * dt) / (1.0 + 0.5 * damping * dt);
@@ -344,7 +346,7 @@ static double push_of(double damping, double dt)
     return 1.0 / (1.0 + 0.5 * damping * dt);
 }
 
-/* What friction leaves of a speed: it stops what it can.                                  (10.2) */
+/* What friction leaves of a speed: it stops what it can. (10.2) */
 static double rub(double speed, double held)
 {
     if (speed > held)
@@ -361,7 +363,7 @@ static double clamp(const struct rigid *rigid, double way)
     return way > rigid->limits[1] ? rigid->limits[1] : way;
 }
 
-/* Books a step's work and losses: half is done by the step itself.                        (10.6) */
+/* Books a step's work and losses: half is done by the step itself. (10.6) */
 static void book(struct rigid *rigid, double work, double damped, double rubbed)
 {
     struct rigid_state *next = &rigid->next;
@@ -373,7 +375,7 @@ static void book(struct rigid *rigid, double work, double damped, double rubbed)
     rigid->energies.rubbed = 0.5 * (rigid->state.rubbed + next->rubbed);
 }
 
-/* Work of gravity that changes between steps, which is done by now.                       (10.6) */
+/* Work of gravity that changes between steps, which is done by now. (10.6) */
 static void book_gravity(struct rigid *rigid, struct vec3 middle, struct vec3 change)
 {
     const double work = -rigid->mass * vec3_dot(middle, change);
@@ -409,7 +411,7 @@ static void plan_driven(struct rigid *rigid, const struct rigid_load *load, doub
     book(rigid, rigid->load * path, rigid->damping * mass * mean * path, -held * path);
 }
 
-/* The orientation a step later, from the angular momentum in between.              (10.4), (10.5) */
+/* The orientation a step later, from the angular momentum in between. (10.4), (10.5) */
 static void turn_free(struct rigid *rigid, double dt)
 {
     struct rigid_state *next = &rigid->next;

@@ -1,11 +1,11 @@
 /*
- * Rigid bodies that forces move: along or about one axis (driven), or freely (THEORY.md, section
- * 10).  Central differences with velocities at half steps, as the spheres'; rotation is a unit
- * quaternion that + - * / and sqrt advance.
+ * Rigid bodies that forces move: along or about one axis (driven), or freely (THEORY.md,
+ * section 10).  Central differences with velocities at half steps, as the spheres'; rotation is
+ * a unit quaternion that + - * / and sqrt advance.
  *
- * A step has two halves: rigid_plan() takes the force and finds where the body will be, and what
- * energies it has now; rigid_move() goes there.  Ranks that are given the same force do the same.
- * Bodies do not feel each other.  All functions are local.
+ * A step has two halves: rigid_plan() takes the force and finds where the body will be, and
+ * what energies it has now; rigid_move() goes there.  Ranks that are given the same force do
+ * the same.  Bodies do not feel each other.  All functions are local.
  */
 #ifndef TREMIE_MODEL_RIGID_H
 #define TREMIE_MODEL_RIGID_H

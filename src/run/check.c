@@ -13,6 +13,8 @@
 #include "model/body.h"
 #include "model/material.h"
 #include "model/packings.h"
+#include "model/region.h"
+#include "model/rigid.h"
 #include "run/inflow.h"
 #include "run/limits.h"
 #include "run/simulation.h"
@@ -170,6 +172,29 @@ static int64_t checksum(const char *path)
     return (int64_t)sum;
 }
 
+/* What only the bodies' surfaces can show. */
+static void check_bodies(const struct job *job, const struct bodies *bodies,
+                         struct mistakes *mistakes)
+{
+    for (int b = 0; b < bodies->n; b++) {
+        const char *fault = rigid_fault(&job->bodies[b], &bodies->list[b].mesh);
+        if (fault != NULL)
+            mistakes_add(mistakes, job->path, 0, 0,
+                         "bodies.%d.free.density: the surface of '%s' %s; a closed surface, or "
+                         "mass, inertia and centre, are expected",
+                         b, bodies->list[b].name, fault);
+    }
+    for (int r = 0; r < job->n_damping_regions; r++) {
+        struct region region;
+        char *why = NULL;
+        if (region_build(&region, &job->damping_regions[r].region, bodies, &why))
+            region_clear(&region);
+        else
+            mistakes_add(mistakes, job->path, 0, 0, "damping_regions.%d.region: %s", r, why);
+        free(why);
+    }
+}
+
 static void read_surfaces(struct job *job, struct mistakes *mistakes)
 {
     for (int b = 0; b < job->n_bodies; b++) {
@@ -240,6 +265,7 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
     add_period_mistakes(mistakes, job, largest);
     if (mistakes->n == 0) {
         survey_check(job, &bodies, mistakes);
+        check_bodies(job, &bodies, mistakes);
         add_bodies(&bodies, &scene);
         inflow_check(job, &bodies, &scene.low, &scene.high, mistakes);
         choose_domain(job, &scene);

@@ -6,6 +6,7 @@
 
 #include "base/elementary.h"
 #include "job/job.h"
+#include "model/gravity.h"
 #include "model/material.h"
 #include "model/packing.h"
 #include "physics/critical_step.h"
@@ -66,7 +67,11 @@ void limits_add(struct limits *limits, const struct job *job, const struct mater
 
 double limits_fall_speed(const struct job *job)
 {
-    const struct vec3 g = job->gravity, size = vec3_sub(job->domain.max, job->domain.min);
+    struct vec3 g = job->gravity;
+    const double most = gravity_most(job);
+    if (gravity_varies(job)) /* in whatever direction */
+        g = (struct vec3){most, most, most};
+    const struct vec3 size = vec3_sub(job->domain.max, job->domain.min);
     const double along = fabs(g.x) * size.x + fabs(g.y) * size.y + fabs(g.z) * size.z;
     return along > 0.0 ? sqrt(along) : 1.0;
 }

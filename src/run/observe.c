@@ -9,6 +9,7 @@
 #include "base/array.h"
 #include "base/report.h"
 #include "job/job.h"
+#include "model/rigid.h"
 #include "physics/contact_law.h"
 #include "run/simulation.h"
 
@@ -49,6 +50,31 @@ static void add_exchange_columns(struct series *table, const struct simulation *
                           "that left the domain");
 }
 
+/* Where a body that forces move is, and how fast. */
+static void add_forced_columns(struct series *table, const struct body *body)
+{
+    static const char axes[] = "xyz", parts[] = "wxyz";
+    const bool turns = body->rigid->kind == RIGID_TURN;
+    if (body->rigid->kind != RIGID_FREE) {
+        series_add_column(table, turns ? "rad" : "m", "from the place at the start", "%s.way",
+                          body->name);
+        series_add_column(table, turns ? "rad/s" : "m/s", "along or about the axis", "%s.speed",
+                          body->name);
+        return;
+    }
+    for (int k = 0; k < 3; k++)
+        series_add_column(table, "m", "centre of mass", "%s.centre_%c", body->name, axes[k]);
+    for (int k = 0; k < 4; k++)
+        series_add_column(table, "1", "orientation since the start, a unit quaternion",
+                          "%s.turn_%c", body->name, parts[k]);
+    for (int k = 0; k < 3; k++)
+        series_add_column(table, "m/s", "velocity of the centre", "%s.velocity_%c", body->name,
+                          axes[k]);
+    for (int k = 0; k < 3; k++)
+        series_add_column(table, "kg m2/s", "angular momentum about the centre",
+                          "%s.momentum_%c", body->name, axes[k]);
+}
+
 void observe_init(struct observe *observe, const struct simulation *sim)
 {
     *observe = (struct observe){0};
@@ -68,7 +94,11 @@ void observe_init(struct observe *observe, const struct simulation *sim)
                       "dissipated_damping");
     series_add_column(table, "J", "lost by the tangential law as its stiffness changes",
                       "dissipated_tangential");
-    series_add_column(table, "J", "work of prescribed motion on the spheres", "work_bodies");
+    series_add_column(
+        table, "J",
+        "work of prescribed motion on the spheres, of forces applied to bodies and of gravity "
+        "that changes",
+        "work_bodies");
     series_add_column(table, "J", "energy carried away by spheres that left", "removed_energy");
     series_add_column(table, "J", "energy carried in by spheres that came in",
                       "inserted_energy");
@@ -91,6 +121,8 @@ void observe_init(struct observe *observe, const struct simulation *sim)
             series_add_column(table, "N m",
                               "torque on the body about the origin, mean since the row before",
                               "%s.torque_%c", sim->bodies.list[b].name, axes[k]);
+        if (sim->bodies.list[b].rigid != NULL)
+            add_forced_columns(table, &sim->bodies.list[b]);
     }
     for (int s = 0; s < sim->sections.n; s++) {
         const char *name = sim->sections.list[s].name;
@@ -122,7 +154,7 @@ static void centred_motion(const struct simulation *sim, int i, double v[3], dou
 {
     const double *motion = sim->spheres.motion[i].lane, *spin = sim->spheres.spin[i].lane;
     const double *force = sim->spheres.force[i].lane;
-    const double g[3] = {sim->job->gravity.x, sim->job->gravity.y, sim->job->gravity.z};
+    const double g[3] = {sim->gravity.x, sim->gravity.y, sim->gravity.z};
     const double half = 0.5 * sim->job->damping * sim->dt, push = 1.0 / (1.0 + half);
     const double keep = (1.0 - half) / (1.0 + half), inverse_mass = spin[7];
     const double turn = 2.5 * inverse_mass * spin[3] * spin[3];
@@ -144,7 +176,7 @@ static double sphere_energies(const struct simulation *sim, int i, double energi
     const double *force = sim->spheres.force[i].lane;
     const struct vec3 x = sphere_place(&sim->spheres, i);
     const double speed2 = v[0] * v[0] + v[1] * v[1] + v[2] * v[2];
-    const struct vec3 g = sim->job->gravity;
+    const struct vec3 g = sim->gravity;
     energies[ENERGY_TRANSLATION] = 0.5 * mass * speed2;
     energies[ENERGY_ROTATION] =
         0.2 * mass * radius * radius * (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]);
@@ -164,7 +196,7 @@ static double sphere_energies(const struct simulation *sim, int i, double energi
 static void add_crossings(const struct simulation *sim, struct exact_sum *sum)
 {
     const struct periodic *periodic = &sim->spheres.periodic;
-    const double g[3] = {sim->job->gravity.x, sim->job->gravity.y, sim->job->gravity.z};
+    const double g[3] = {sim->gravity.x, sim->gravity.y, sim->gravity.z};
     for (int i = 0; i < sim->spheres.n_owned && periodic->any; i++) {
         double place[3];
         int turns[3];
@@ -218,6 +250,30 @@ static int64_t count_facets(const struct simulation *sim)
     return n;
 }
 
+/* Total over ranks of a rank's share. */
+static double total_of(const struct simulation *sim, const struct exact_sum *share)
+{
+    struct exact_sum sum = *share;
+    exact_sum_reduce(sim->comm, &sum, 1);
+    return exact_sum_value(&sum);
+}
+
+/* Of bodies that forces move; all ranks know them. */
+static void add_forced_energies(const struct simulation *sim, double energies[N_ENERGIES])
+{
+    for (int b = 0; sim->bodies.n_forced > 0 && b < sim->bodies.n; b++) {
+        const struct rigid *rigid = sim->bodies.list[b].rigid;
+        if (rigid == NULL)
+            continue;
+        energies[ENERGY_TRANSLATION] += rigid->energies.kinetic_translation;
+        energies[ENERGY_ROTATION] += rigid->energies.kinetic_rotation;
+        energies[ENERGY_POTENTIAL] += rigid->energies.potential;
+        energies[ENERGY_FRICTION] += rigid->energies.rubbed;
+        energies[ENERGY_DAMPING] += rigid->energies.damped;
+        energies[ENERGY_WORK] += rigid->energies.work;
+    }
+}
+
 /* Energies summed over ranks. */
 static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], double *speed_max,
                          int64_t counts[3])
@@ -242,6 +298,8 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
     /* A force works in half of the interval before the step and half of the one after: at the
      * step half of what it adds is done, the mean of before and after. */
     for (int b = 0; b < sim->facets.n_bodies; b++) {
+        if (sim->bodies.list[b].rigid != NULL)
+            continue;
         exact_sum_merge(&sums[ENERGY_WORK], &sim->observe.work_before[b]);
         exact_sum_merge(&sums[ENERGY_WORK], &sim->facets.loads[b].work);
     }
@@ -255,15 +313,10 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
     for (int e = 0; e < N_ENERGIES; e++)
         energies[e] = exact_sum_value(&sums[e]);
     energies[ENERGY_WORK] *= 0.5;
+    if (sim->gravity_varies)
+        energies[ENERGY_WORK] += total_of(sim, &sim->observe.totals[OBSERVE_GRAVITY_WORK]);
+    add_forced_energies(sim, energies);
     *speed_max = sqrt(speed2_max);
-}
-
-/* Total over ranks of a rank's share. */
-static double total_of(const struct simulation *sim, const struct exact_sum *share)
-{
-    struct exact_sum sum = *share;
-    exact_sum_reduce(sim->comm, &sum, 1);
-    return exact_sum_value(&sum);
 }
 
 /* What is there now, gone to heat or `carried` away less carried in, less what was put in. */
@@ -336,6 +389,28 @@ static int add_energy_values(struct simulation *sim, double *row, int n,
     return n;
 }
 
+/* As add_forced_columns() names them; velocities are those of the step. (5.4) */
+static int add_forced_values(const struct rigid *rigid, double *row, int n)
+{
+    const struct rigid_state *a = &rigid->state, *b = &rigid->next;
+    if (rigid->kind != RIGID_FREE) {
+        row[n++] = a->way;
+        row[n++] = 0.5 * (a->speed + b->speed);
+        return n;
+    }
+    const struct vec3 vectors[3] = {a->centre,
+                                    vec3_scale(0.5, vec3_add(a->velocity, b->velocity)),
+                                    vec3_scale(0.5, vec3_add(a->momentum, b->momentum))};
+    for (int k = 0; k < 3; k++) {
+        row[n++] = vectors[k].x;
+        row[n++] = vectors[k].y;
+        row[n++] = vectors[k].z;
+        for (int q = 0; k == 0 && q < 4; q++)
+            row[n++] = a->turn[q];
+    }
+    return n;
+}
+
 static int add_body_values(struct simulation *sim, double *row, int n, double n_steps)
 {
     for (int b = 0; b < sim->bodies.n; b++) {
@@ -345,6 +420,8 @@ static int add_body_values(struct simulation *sim, double *row, int n, double n_
             row[n++] = total_of(sim, sum) / n_steps;
             *sum = (struct exact_sum){0};
         }
+        if (sim->bodies.list[b].rigid != NULL)
+            n = add_forced_values(sim->bodies.list[b].rigid, row, n);
     }
     return n;
 }
@@ -424,6 +501,35 @@ void observe_overlap(struct simulation *sim, double overlap)
     exact_sum_add(largest, overlap * OVERLAP_SCALE);
 }
 
+void observe_gone(struct simulation *sim)
+{
+    bool goes = false;
+    for (int b = 0; b < sim->bodies.n; b++) {
+        const struct body *body = &sim->bodies.list[b];
+        goes = goes ||
+               (!body->exists && sim->step > 0 && body_exists(body, sim->step - 1, sim->dt));
+    }
+    if (goes && sim->job->energy_ledger)
+        facet_contacts_held(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials, sim->dt,
+                            &sim->observe.totals[OBSERVE_REMOVED_ENERGY]);
+}
+
+/* Places of the middle of the step before, as gravity has changed in it. (7.2) */
+void observe_gravity(struct simulation *sim)
+{
+    const struct vec3 dg = sim->gravity_change;
+    if (!sim->job->energy_ledger || !(vec3_norm(dg) > 0.0))
+        return;
+    for (int i = 0; i < sim->spheres.n_owned; i++) {
+        const double *x = sphere_position(&sim->spheres, i),
+                     *v = sphere_velocity(&sim->spheres, i);
+        const double half = 0.5 * sim->dt, mass = 1.0 / sphere_inverse_mass(&sim->spheres, i);
+        const double rise = dg.x * (x[0] - half * v[0]) + dg.y * (x[1] - half * v[1]) +
+                            dg.z * (x[2] - half * v[2]);
+        exact_sum_add(&sim->observe.totals[OBSERVE_GRAVITY_WORK], -mass * rise);
+    }
+}
+
 void observe_removed(struct simulation *sim, int i)
 {
     double energies[N_ENERGIES] = {0.0};
@@ -475,7 +581,7 @@ int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
     static const char *const totals[OBSERVE_N_TOTALS] = {
         "energy_start",       "removed_energy", "removed_friction", "removed_damping",
         "removed_tangential", "last_step",      "turned",           "overlap",
-        "inserted_energy",    "crossed",
+        "inserted_energy",    "crossed",        "gravity_work",
     };
     static const char *const loads[] = {"force_x",  "force_y",  "force_z",
                                         "torque_x", "torque_y", "torque_z"};

@@ -29,6 +29,7 @@ enum observe_total {
     OBSERVE_OVERLAP,         /* largest overlap/radius since then, times 2^40; on rank 0 */
     OBSERVE_INSERTED_ENERGY, /* carried in by spheres that came in [J] */
     OBSERVE_CROSSED,         /* potential energy gained by crossing periodic boundaries [J] */
+    OBSERVE_GRAVITY_WORK,    /* of gravity that changes, on the spheres [J] */
     OBSERVE_N_TOTALS,
 };
 
@@ -52,6 +53,10 @@ void observe_overlap(struct simulation *sim, double overlap);
 /* Books who lies beyond a periodic boundary, before places are brought into the domain.
  * Local. */
 void observe_crossings(struct simulation *sim);
+/* Books what contacts with bodies that are no more held, before the step's forces.  Local. */
+void observe_gone(struct simulation *sim);
+/* Books the work of gravity that has changed since the step before.  Local. */
+void observe_gravity(struct simulation *sim);
 /* Books sphere i as leaving the run. */
 void observe_removed(struct simulation *sim, int i);
 

@@ -10,9 +10,11 @@
 #include "base/array.h"
 #include "base/report.h"
 #include "job/job.h"
+#include "model/gravity.h"
 #include "model/order.h"
 #include "model/packings.h"
 #include "run/redistribute.h"
+#include "store/body_notes.h"
 #include "store/checkpoint.h"
 #include "store/run_folder.h"
 #include "store/sphere_file.h"
@@ -79,6 +81,10 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
         sim->sample_every = 1;
     materials_build(&sim->materials, job);
     bodies_build(&sim->bodies, job);
+    sim->gravity = gravity_at(job, 0.0);
+    sim->gravity_varies = gravity_varies(job);
+    forced_init(&sim->forced, sim);
+    local_damping_init(&sim->local_damping, sim);
     spheres_init(&sim->spheres);
     periodic_init(&sim->spheres.periodic, job);
     facet_contacts_init(&sim->facets, sim->bodies.n);
@@ -168,8 +174,9 @@ void simulation_create(struct simulation *sim, const struct comm *comm, const st
 /* Files of before there was such a total have none. */
 static bool may_be_missing(const char *name)
 {
-    static const char *const later[] = {"run.turned", "run.inserted_energy", "leavers.count",
-                                        "leavers.mass", "run.crossed"};
+    static const char *const later[] = {"run.turned",    "run.inserted_energy",
+                                        "leavers.count", "leavers.mass",
+                                        "run.crossed",   "run.gravity_work"};
     for (size_t k = 0; k < sizeof later / sizeof *later; k++)
         if (strcmp(name, later[k]) == 0)
             return true;
@@ -224,7 +231,8 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
     int status = checkpoint_read(comm, checkpoint_path, &checkpoint);
     const bool fits = status == REPORT_FINISHED && fits_job(sim, &checkpoint) &&
                       restore_monitors(sim, &checkpoint) == REPORT_FINISHED &&
-                      insertions_take_notes(&sim->insertions, &checkpoint.notes);
+                      insertions_take_notes(&sim->insertions, &checkpoint.notes) &&
+                      body_notes_take(&checkpoint.notes, &sim->bodies);
     if (status == REPORT_FINISHED && comm_agree(comm, fits ? 0 : 1) != 0) {
         report_error("%s has other materials, bodies or sections than the job; "
                      "use the job it belongs to",
@@ -262,11 +270,14 @@ void simulation_destroy(struct simulation *sim)
     boxes_clear(&sim->boxes);
     halo_clear(&sim->halo);
     migrate_clear(&sim->migrate);
+    forced_clear(&sim->forced);
+    local_damping_clear(&sim->local_damping);
     sections_clear(&sim->sections);
     contents_clear(&sim->contents);
     insertions_clear(&sim->insertions);
     removals_clear(&sim->removals);
     observe_clear(&sim->observe);
+    watch_clear(&sim->watch);
     runtime_clear(&sim->runtime);
 }
 
@@ -357,6 +368,7 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
     }
     free(totals);
     insertions_put_notes(&sim->insertions, &checkpoint.notes);
+    body_notes_add(&checkpoint.notes, &sim->bodies);
     char *path = run_folder_checkpoint_path(folder, sim->step);
     const int status = checkpoint_write(sim->comm, path, &checkpoint);
     unwrap_places(sim, held);

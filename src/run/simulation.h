@@ -20,7 +20,9 @@
 #include "model/material.h"
 #include "model/sphere.h"
 #include "run/contents.h"
+#include "run/forced.h"
 #include "run/insertion.h"
+#include "run/local_damping.h"
 #include "run/observe.h"
 #include "run/removal.h"
 #include "run/runtime.h"
@@ -68,6 +70,11 @@ struct simulation {
     double half_buffer; /* least allowance of a search [m] */
     struct simulation_spent spent;
 
+    struct vec3 gravity;        /* at this step [m/s2] */
+    struct vec3 gravity_change; /* since the step before [m/s2] */
+    bool gravity_varies;
+    struct forced forced;
+    struct local_damping local_damping;
     struct sections sections;
     struct contents contents;
     struct insertions insertions;

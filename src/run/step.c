@@ -1,14 +1,15 @@
 /*
  * The time step.  Places are those at n, velocities those at n - 1/2 when a step begins:
  *
- *   1 prescribed motion of the bodies                             model/body.h
+ *   1 gravity; bodies where they are by now                       model/body.h
  *     now and then: spheres leave the run and come in             removal.h, insertion.h
  *   2 if stale: redistribute (both levels), global search         redistribute.h
  *   3 local search and contact laws of spheres with facets        contact/facet_contact.h
  *   4 contact laws of pairs of spheres, with history              contact/pair_kernel.h
+ *     the spheres' force on bodies that forces move               forced.h
  *   5 now and then: contacts against the step; energies, forces   watch.h, observe.h
  *     on bodies, sections
- *   6 gravity, integration of owned spheres to n + 1              physics/integrate.h
+ *   6 gravity, integration of owned spheres and bodies to n + 1   physics/integrate.h
  *   7 passages through sections                                   sections.h
  *   8 refresh of the ghosts                                       domain/halo.h
  *   9 the one reduction: motion against the buffer, overlap, signals, clock   watch.h
@@ -20,6 +21,7 @@
 #include "base/array.h"
 #include "base/timer.h"
 #include "job/job.h"
+#include "model/gravity.h"
 #include "physics/integrate.h"
 #include "run/redistribute.h"
 #include "run/simulation.h"
@@ -83,7 +85,7 @@ static void pair_forces(struct simulation *sim)
 static void integrate(struct simulation *sim, double spent[2], bool *bad)
 {
     struct spheres *spheres = &sim->spheres;
-    const struct vec3 g = sim->job->gravity;
+    const struct vec3 g = sim->gravity;
     struct integrate_work work = {
         .n = spheres->n_owned,
         .motion = spheres->motion,
@@ -139,11 +141,25 @@ static void observe(struct simulation *sim)
     }
 }
 
+/* What changes with time alone, or was found in the step before. */
+static void begin(struct simulation *sim)
+{
+    bodies_place(&sim->bodies, sim->step, sim->dt);
+    forced_begin(sim);
+    observe_gone(sim);
+    if (!sim->gravity_varies)
+        return;
+    const double before = (double)(sim->step > 0 ? sim->step - 1 : 0) * sim->dt;
+    sim->gravity = gravity_at(sim->job, (double)sim->step * sim->dt);
+    sim->gravity_change = vec3_sub(sim->gravity, gravity_at(sim->job, before));
+    observe_gravity(sim);
+}
+
 void step_forces(struct simulation *sim)
 {
     struct runtime *runtime = &sim->runtime;
     runtime_begin(runtime);
-    bodies_place(&sim->bodies, sim->step, sim->dt);
+    begin(sim);
     runtime_end(runtime, RUNTIME_BODIES);
     exchange_spheres(sim);
     if (redistribute_is_due(sim))
@@ -159,7 +175,9 @@ void step_forces(struct simulation *sim)
     runtime_end(runtime, RUNTIME_FACETS);
     pair_forces(sim);
     runtime_end(runtime, RUNTIME_PAIRS);
+    local_damping_apply(sim);
     sim->balance.busy += timer_now() - began;
+    forced_plan(sim);
     observe(sim);
 }
 
@@ -170,12 +188,14 @@ void step(struct simulation *sim)
     bool bad;
     step_forces(sim);
     integrate(sim, spent, &bad);
+    forced_move(sim);
     sim->step++;
     sections_pass(&sim->sections, &sim->spheres);
     runtime_end(runtime, RUNTIME_INTEGRATE);
     halo_refresh(&sim->halo, sim->comm, &sim->spheres);
     runtime_end(runtime, RUNTIME_HALO);
     watch_agree(&sim->watch, sim, spent, bad);
+    watch_forced(&sim->watch, sim);
     observe_overlap(sim, sim->watch.overlap);
     redistribute_spend(sim, spent);
     runtime->particle_steps += sim->n_spheres;

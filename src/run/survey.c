@@ -9,6 +9,7 @@
 #include "base/report.h"
 #include "job/job.h"
 #include "model/body.h"
+#include "model/rigid.h"
 #include "model/sphere.h"
 
 /* A drawing wider than this many radii is probably in other units; or one that is wider than
@@ -54,6 +55,24 @@ static double largest_side(const struct mesh_survey *survey)
     return size.z > side ? size.z : side;
 }
 
+/* How a body that forces move yields. */
+static void print_forced(const struct body *body)
+{
+    const struct rigid *rigid = body->rigid;
+    if (rigid == NULL)
+        return;
+    if (rigid->kind == RIGID_SLIDE)
+        report_say("          slides along (%.3g, %.3g, %.3g), %.6g kg, under %.6g N",
+                   rigid->axis.x, rigid->axis.y, rigid->axis.z, rigid->mass, rigid->load);
+    else if (rigid->kind == RIGID_TURN)
+        report_say("          turns about (%.3g, %.3g, %.3g), %.6g kg m2, under %.6g N m",
+                   rigid->axis.x, rigid->axis.y, rigid->axis.z, rigid->inertia, rigid->load);
+    else
+        report_say("          free, %.6g kg about (%.6g, %.6g, %.6g) m; it does not feel other "
+                   "bodies",
+                   rigid->mass, rigid->centre.x, rigid->centre.y, rigid->centre.z);
+}
+
 static void print_body(const struct job *job, const struct body *body)
 {
     const struct mesh *mesh = &body->mesh;
@@ -62,7 +81,10 @@ static void print_body(const struct job *job, const struct body *body)
     report_say("body      %s: rigid, %s, %d %s%s%s", body->name,
                job->materials[body->material].name, n,
                mesh->n_bands > 0 ? "curved surface" : "facet", n == 1 ? "" : "s",
-               body->moves ? ", moves as prescribed" : "");
+               body->moves && body->rigid == NULL ? ", moves as prescribed" : "");
+    print_forced(body);
+    if (body->comes_and_goes)
+        report_say("          there from %.6g s to %.6g s", body->active[0], body->active[1]);
     report_say("          x %.4g .. %.4g, y %.4g .. %.4g, z %.4g .. %.4g m", survey.low.x,
                survey.high.x, survey.low.y, survey.high.y, survey.low.z, survey.high.z);
     if (survey.closed && survey.n_turned == 0)

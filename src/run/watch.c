@@ -10,6 +10,7 @@
 #include "base/report.h"
 #include "base/timer.h"
 #include "job/job.h"
+#include "model/rigid.h"
 #include "physics/contact_geometry.h"
 #include "physics/contact_law.h"
 #include "physics/critical_step.h"
@@ -25,6 +26,12 @@ void watch_init(struct watch *watch, double checkpoint_every)
 {
     *watch = (struct watch){.checkpoint_every = checkpoint_every,
                             .checkpoint_at = timer_now() + checkpoint_every};
+}
+
+void watch_clear(struct watch *watch)
+{
+    free(watch->loads);
+    watch->loads = NULL;
 }
 
 /* The first failure stands. */
@@ -57,22 +64,72 @@ static struct split split_pair(const struct simulation *sim, int k)
         {critical_step_share(w_i, u_i, u_j), critical_step_share(w_j, u_j, u_i)}};
 }
 
+/* The largest of what a contact's springs and dashpots have, across and along. */
+static double stiffest(const double parts[3])
+{
+    const double most = parts[0] > parts[1] ? parts[0] : parts[1];
+    return most > parts[2] ? most : parts[2];
+}
+
+/* A contact with a body that yields: 1/m of the sphere, and so much more that the body's own
+ * load by all of its contacts, divided evenly over time, is in it. (10.8) */
+static double yielding_share(const struct critical_step_contact *contact, double share,
+                             const struct critical_step_sums *load)
+{
+    const double k = load->stiffness / stiffest(contact->stiffness);
+    const double d =
+        stiffest(contact->damping) > 0.0 ? load->damping / stiffest(contact->damping) : 0.0;
+    return share + (k > d ? k : d);
+}
+
 static struct split split_facet(const struct simulation *sim,
                                 const struct facet_contact *contact)
 {
     const struct spheres *spheres = &sim->spheres;
     const int i = contact->sphere, wall = sim->bodies.list[contact->body].material;
     const double w = sphere_inverse_mass(spheres, i);
-    return (struct split){
+    struct split split = {
         critical_step_contact(
             &sim->materials.pairs[spheres->material[i] * sim->materials.n + wall],
             contact->history[CONTACT_RADIUS_LANE], 1.0 / w),
         {critical_step_share(w, sphere_curvature(spheres, i), 0.0), 0.0}};
+    if (sim->bodies.list[contact->body].rigid != NULL && sim->watch.loads != NULL)
+        split.share[0] =
+            yielding_share(&split.contact, split.share[0], &sim->watch.loads[contact->body]);
+    return split;
 }
 
 static bool facet_touches(const struct facet_contact *contact)
 {
     return contact->history[CONTACT_RADIUS_LANE] > 0.0;
+}
+
+/* What contacts do to the bodies that forces move, exact over all ranks: any rank then judges
+ * its spheres alone.  Nothing in jobs without such bodies.  Collective. */
+static void load_bodies(const struct simulation *sim)
+{
+    const int n = sim->bodies.n;
+    if (sim->bodies.n_forced == 0)
+        return;
+    struct exact_sum *sums = array_allocate(2 * (size_t)n, sizeof *sums);
+    memset(sim->watch.loads, 0, (size_t)n * sizeof *sim->watch.loads);
+    for (int k = 0; k < sim->facets.n; k++) {
+        const struct facet_contact *contact = &sim->facets.list[k];
+        const struct body *body = &sim->bodies.list[contact->body];
+        if (!facet_touches(contact) || body->rigid == NULL)
+            continue;
+        const double *x = sphere_position(&sim->spheres, contact->sphere);
+        const double yield = rigid_yield_most(body->rigid, (struct vec3){x[0], x[1], x[2]});
+        const struct critical_step_contact felt = split_facet(sim, contact).contact;
+        exact_sum_add(&sums[2 * contact->body], stiffest(felt.stiffness) * yield);
+        exact_sum_add(&sums[2 * contact->body + 1], stiffest(felt.damping) * yield);
+    }
+    exact_sum_reduce(sim->comm, sums, 2 * n);
+    for (int b = 0; b < n; b++) {
+        sim->watch.loads[b].stiffness = exact_sum_value(&sums[2 * b]);
+        sim->watch.loads[b].damping = exact_sum_value(&sums[2 * b + 1]);
+    }
+    free(sums);
 }
 
 /* Adds each contact to the sums of the spheres in it.  Owned spheres have all of theirs here;
@@ -179,6 +236,7 @@ static double find_least_of_sums(const struct simulation *sim)
 double watch_critical_step(const struct simulation *sim)
 {
     enum { SUMS_OFF_BY = 3 }; /* what matrices allow at most, in what sums allow */
+    load_bodies(sim);
     const double most = SUMS_OFF_BY * find_least_of_sums(sim);
     double critical = find_critical(sim, most);
     comm_min(sim->comm, &critical, 1);
@@ -203,7 +261,7 @@ static double least_overlap(const struct simulation *sim, int i)
 {
     enum { WEIGHTLESS = 100000 }; /* radii over overlap: of gentle impacts of stiff spheres */
     const struct materials *materials = &sim->materials;
-    const double g = vec3_norm(sim->job->gravity), radius = sphere_radius(&sim->spheres, i);
+    const double g = vec3_norm(sim->gravity), radius = sphere_radius(&sim->spheres, i);
     const struct material_pair *stiffest = NULL;
     for (int m = 0; m < materials->n; m++) {
         const struct material_pair *pair =
@@ -248,6 +306,7 @@ void watch_contacts(struct watch *watch, const struct simulation *sim)
 {
     if (sim->step % WATCH_CONTACTS_EVERY != 0)
         return;
+    load_bodies(sim);
     watch->rate = 1.0 / find_critical(sim, sim->dt / sim->job->watch.step);
     watch->rounding = find_rounding(sim);
 }
@@ -277,6 +336,9 @@ void watch_bodies(struct watch *watch, const struct simulation *sim)
         radius_least = radius < radius_least ? radius : radius_least;
     }
     comm_min(sim->comm, &radius_least, 1);
+    watch->radius_least = radius_least;
+    if (sim->bodies.n_forced > 0)
+        watch->loads = array_allocate((size_t)sim->bodies.n, sizeof *watch->loads);
     for (int b = 0; b < sim->bodies.n && watch->failure == WATCH_FINE; b++) {
         const struct body *body = &sim->bodies.list[b];
         const double motion = body->speed_max * sim->dt / radius_least;
@@ -286,6 +348,21 @@ void watch_bodies(struct watch *watch, const struct simulation *sim)
         watch->motion = motion;
         snprintf(watch->what, sizeof watch->what,
                  "body '%.60s' moves %.3g of the least radius in a step", body->name, motion);
+    }
+}
+
+void watch_forced(struct watch *watch, const struct simulation *sim)
+{
+    for (int b = 0; sim->bodies.n_forced > 0 && b < sim->bodies.n; b++) {
+        const struct body *body = &sim->bodies.list[b];
+        const double motion = body->speed_max * sim->dt / watch->radius_least;
+        if (body->rigid == NULL || motion <= sim->job->watch.motion)
+            continue;
+        fail(watch, motion == motion ? WATCH_MOTION : WATCH_NOT_A_NUMBER);
+        watch->motion = motion;
+        snprintf(watch->what, sizeof watch->what,
+                 "body '%.60s' moves %.3g of the least radius in a step", body->name, motion);
+        return;
     }
 }
 
@@ -557,13 +634,32 @@ static void tell_all(const struct comm *comm, char *what, size_t size)
     free(all);
 }
 
+/* A body that was not there before the step just done; NULL where there is none. */
+static const char *find_appeared(const struct simulation *sim)
+{
+    for (int b = 0; b < sim->bodies.n; b++) {
+        const struct body *body = &sim->bodies.list[b];
+        if (body->comes_and_goes && sim->step > 1 &&
+            body_exists(body, sim->step - 1, sim->dt) &&
+            !body_exists(body, sim->step - 2, sim->dt))
+            return body->name;
+    }
+    return NULL;
+}
+
 /* An overlap has one of three causes; at a stable step and after the start the contact is too
  * soft. */
 static void explain_overlap(const struct simulation *sim, const char *when,
                             const struct deepest *deepest)
 {
     const double limit = sim->job->watch.overlap;
-    if (sim->step <= 1)
+    const char *appeared = find_appeared(sim);
+    if (sim->step > 1 && appeared != NULL)
+        report_error("body '%s' appeared where spheres are, at %s: %s overlap by %.3g of a "
+                     "radius, more than watch.overlap = %.3g; clear its place first, or let it "
+                     "come earlier",
+                     appeared, when, deepest->what, deepest->overlap, limit);
+    else if (sim->step <= 1)
         report_error("overlap at the start: %s overlap by %.3g of a radius, more than "
                      "watch.overlap = %.3g; place them farther apart",
                      deepest->what, deepest->overlap, limit);

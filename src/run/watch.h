@@ -14,6 +14,7 @@
 #include <stdbool.h>
 #include <stddef.h>
 
+struct critical_step_sums;
 struct simulation;
 
 enum watch_failure {
@@ -49,19 +50,27 @@ struct watch {
      * reduction. */
     double rate;     /* 1 / critical step of the present contacts, if it fails the run [1/s] */
     double rounding; /* of places, over what contacts can bear [-] */
+    double radius_least; /* of all spheres at the start [m] */
+    /* What all contacts of each body that forces move do to it, when last looked at. */
+    struct critical_step_sums *loads;
     /* this rank's part of the diagnosis */
     char what[160];
 };
 
 void watch_init(struct watch *watch, double checkpoint_every);
+void watch_clear(struct watch *watch);
 
 /* Notes the allowances that a search has chosen.  Local. */
 void watch_searched(struct watch *watch, const struct simulation *sim);
 /* Looks at bodies' motion, which the job prescribes, before the first step.  Collective. */
 void watch_bodies(struct watch *watch, const struct simulation *sim);
 
+/* Looks at the motion of bodies that forces move, in the step just done.  The same on all
+ * ranks. */
+void watch_forced(struct watch *watch, const struct simulation *sim);
+
 /* Looks at contacts and places, where the step is one that is looked at: forces are known,
- * nothing has moved.  Local. */
+ * nothing has moved.  Local; collective where forces move bodies. */
 void watch_contacts(struct watch *watch, const struct simulation *sim);
 
 /* The step's one reduction: spent[] becomes the largest on any rank.  Collective. */
