@@ -8,7 +8,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
-enum field_type { FIELD_DOUBLE, FIELD_INT64, FIELD_INT32 };
+/* FIELD_FLOAT: 32 bits, for pictures; state is never rounded. */
+enum field_type { FIELD_DOUBLE, FIELD_INT64, FIELD_INT32, FIELD_FLOAT };
 
 enum field_use {
     FIELD_GHOST = 1,  /* given to a ghost when it is made */
@@ -35,7 +36,7 @@ struct field_view {
 
 static inline size_t field_component_size(enum field_type type)
 {
-    return type == FIELD_INT32 ? sizeof(int32_t) : 8;
+    return type == FIELD_INT32 || type == FIELD_FLOAT ? 4 : 8;
 }
 static inline size_t field_size(const struct field *field)
 {

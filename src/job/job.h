@@ -335,6 +335,8 @@ struct job_insertion {
 enum job_direction { JOB_DIRECTION_X = 1, JOB_DIRECTION_Y = 2, JOB_DIRECTION_Z = 4 };
 enum job_leavers { JOB_LEAVERS_STOP, JOB_LEAVERS_REMOVE, JOB_LEAVERS_IGNORE };
 enum job_weights { JOB_WEIGHTS_CONTACTS, JOB_WEIGHTS_CANDIDATES };
+enum job_compress { JOB_COMPRESS_NONE, JOB_COMPRESS_LOSSLESS };
+enum job_precision { JOB_PRECISION_DOUBLE, JOB_PRECISION_SINGLE };
 enum job_search { JOB_SEARCH_AUTO, JOB_SEARCH_ALL_PAIRS };
 
 struct job {
@@ -396,6 +398,13 @@ struct job {
     } checkpoint;
     struct {
         double series_every; /* [s]; a whole number of steps */
+        struct {
+            double every; /* [s]; a whole number of steps; 0: no snapshots */
+            int fields;   /* bit k: enum snapshot_field SNAPSHOT_FIRST_CHOICE + k */
+            bool contacts;
+            enum job_compress compress;
+            enum job_precision precision;
+        } snapshots;
     } output;
     struct {
         double overlap; /* largest overlap over radius that a run tolerates [-] */

@@ -59,6 +59,20 @@ static const char *const fulls[] = {"wait", "stop", NULL};
 static const char *const directions[] = {"x", "y", "z", NULL};
 static const char *const leavers[] = {"stop", "remove", "ignore", NULL};
 static const char *const weights[] = {"contacts", "candidates", NULL};
+/* In the order of enum snapshot_field. */
+static const char *const snapshot_fields[] = {"velocity",
+                                              "angular_velocity",
+                                              "force",
+                                              "torque",
+                                              "mass",
+                                              "material",
+                                              "group",
+                                              "dissipated_friction",
+                                              "dissipated_damping",
+                                              "dissipated_tangential",
+                                              NULL};
+static const char *const compressions[] = {"none", "lossless", NULL};
+static const char *const precisions[] = {"double", "single", NULL};
 static const char *const searches[] = {"auto", "all-pairs", NULL};
 
 static const struct schema_key time_keys[] = {
@@ -754,9 +768,31 @@ static const struct schema_key series_keys[] = {
      .standard = "0.01", ABOVE_TO(0.0, 1e9), AT(struct job, output.series_every)},
     END};
 
+static const struct schema_key snapshots_keys[] = {
+    {"every", SCHEMA_NUMBER,
+     "simulated time between snapshots, rounded to whole steps (at least one)", .unit = "s",
+     .required = true, ABOVE_TO(0.0, 1e9), AT(struct job, output.snapshots.every)},
+    {"fields", SCHEMA_CHOICES, "what is kept of each sphere besides id, position and radius",
+     .standard = "[velocity, angular_velocity, force, material, group]",
+     .choices = snapshot_fields, AT(struct job, output.snapshots.fields)},
+    {"contacts", SCHEMA_FLAG, "place and force of each contact between spheres as well",
+     .standard = "false", AT(struct job, output.snapshots.contacts)},
+    {"compress", SCHEMA_CHOICE,
+     "whether numbers are packed, which loses nothing, takes about half the space and several "
+     "times as long to write",
+     .standard = "none", .choices = compressions, AT(struct job, output.snapshots.compress)},
+    {"precision", SCHEMA_CHOICE,
+     "numbers of spheres and contacts as they are, or rounded to 7 digits in half the space",
+     .standard = "double", .choices = precisions, AT(struct job, output.snapshots.precision)},
+    END};
+
 static const struct schema_key output_keys[] = {
     {"series", SCHEMA_GROUP, "energies, forces on bodies, passages through sections over time",
      .inside = series_keys},
+    {"snapshots", SCHEMA_GROUP,
+     "spheres and bodies at regular times in RUN/snapshots/, for ParaView and other tools; none "
+     "when left out",
+     .inside = snapshots_keys, GIVEN(struct job, output.snapshots.every)},
     END};
 
 static const struct schema_key watch_keys[] = {

@@ -141,9 +141,11 @@ static void choose_times(struct job *job, const struct packings *packings, doubl
         job->time.step = limits_step(&limits, job->time.safety);
     const double n_steps = (double)simulation_steps(job->time.end, job->time.step);
     job->time.end = (n_steps > 1.0 ? n_steps : 1.0) * job->time.step;
-    if (job->output.series_every > 0.0) {
-        const double n = (double)simulation_steps(job->output.series_every, job->time.step);
-        job->output.series_every = (n > 1.0 ? n : 1.0) * job->time.step;
+    double *const periods[] = {&job->output.series_every, &job->output.snapshots.every};
+    for (size_t k = 0; k < sizeof periods / sizeof *periods; k++) {
+        const double n = (double)simulation_steps(*periods[k], job->time.step);
+        if (*periods[k] > 0.0)
+            *periods[k] = (n > 1.0 ? n : 1.0) * job->time.step;
     }
 }
 

@@ -205,6 +205,8 @@ static int prepare(struct drive *drive)
                    (double)drive->sim.step * drive->sim.dt);
     drive->ended = found && drive->options->restart == NULL && has_ended(drive);
     if (drive->comm->rank == 0 && !drive->ended)
+        status = capture_open(&drive->sim, &drive->folder);
+    if (drive->comm->rank == 0 && !drive->ended && status == REPORT_FINISHED)
         status = run_folder_rewind(&drive->folder, drive->sim.step);
     status = comm_agree(drive->comm, status);
     if (status != REPORT_FINISHED)
@@ -303,6 +305,9 @@ static int loop(struct drive *drive)
     while (sim->step < sim->n_steps && !sim->watch.stop_agreed &&
            sim->watch.failure == WATCH_FINE) {
         step(sim);
+        status = capture_write(sim, &drive->folder);
+        if (status != REPORT_FINISHED)
+            return status;
         drive->overlap =
             sim->watch.overlap > drive->overlap ? sim->watch.overlap : drive->overlap;
         do_chores(drive);
@@ -330,6 +335,9 @@ static int finish_series(struct drive *drive)
     struct simulation *sim = &drive->sim;
     if (sim->watch.failure == WATCH_FINE) {
         step_forces(sim);
+        const int written = capture_write(sim, &drive->folder);
+        if (written != REPORT_FINISHED)
+            return written;
         if (sim->watch.failure != WATCH_FINE) {
             watch_explain(&sim->watch, sim);
             return REPORT_UNSTABLE;

@@ -150,7 +150,7 @@ void observe_before(struct simulation *sim)
 
 /* Half-step velocity brought to the step by half of what the step will add.
  * (5.4) */
-static void centred_motion(const struct simulation *sim, int i, double v[3], double w[3])
+void observe_motion(const struct simulation *sim, int i, double v[3], double w[3])
 {
     const double *motion = sim->spheres.motion[i].lane, *spin = sim->spheres.spin[i].lane;
     const double *force = sim->spheres.force[i].lane;
@@ -170,7 +170,7 @@ static void centred_motion(const struct simulation *sim, int i, double v[3], dou
 static double sphere_energies(const struct simulation *sim, int i, double energies[N_ENERGIES])
 {
     double v[3], w[3];
-    centred_motion(sim, i, v, w);
+    observe_motion(sim, i, v, w);
     const double mass = 1.0 / sphere_inverse_mass(&sim->spheres, i),
                  radius = sphere_radius(&sim->spheres, i);
     const double *force = sim->spheres.force[i].lane;

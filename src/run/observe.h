@@ -57,6 +57,8 @@ void observe_crossings(struct simulation *sim);
 void observe_gone(struct simulation *sim);
 /* Books the work of gravity that has changed since the step before.  Local. */
 void observe_gravity(struct simulation *sim);
+/* Velocity v and spin w of sphere i brought to the step, when its forces are known.  Local. */
+void observe_motion(const struct simulation *sim, int i, double v[3], double w[3]);
 /* Books sphere i as leaving the run. */
 void observe_removed(struct simulation *sim, int i);
 

@@ -98,6 +98,7 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     insertions_init(&sim->insertions, job, &sim->bodies);
     removals_init(&sim->removals, job, &sim->bodies);
     observe_init(&sim->observe, sim);
+    capture_init(&sim->capture, sim);
     watch_init(&sim->watch, job->checkpoint.every_wall);
 }
 
@@ -278,6 +279,7 @@ void simulation_destroy(struct simulation *sim)
     removals_clear(&sim->removals);
     observe_clear(&sim->observe);
     watch_clear(&sim->watch);
+    capture_clear(&sim->capture);
     runtime_clear(&sim->runtime);
 }
 

@@ -19,6 +19,7 @@
 #include "model/body.h"
 #include "model/material.h"
 #include "model/sphere.h"
+#include "run/capture.h"
 #include "run/contents.h"
 #include "run/forced.h"
 #include "run/insertion.h"
@@ -80,6 +81,7 @@ struct simulation {
     struct insertions insertions;
     struct removals removals;
     struct observe observe;
+    struct capture capture;
     struct watch watch;
     struct runtime runtime;
 };

@@ -139,6 +139,8 @@ static void observe(struct simulation *sim)
         watch_energy(&sim->watch, sim);
         runtime_end(runtime, RUNTIME_SAMPLE);
     }
+    capture_take(sim);
+    runtime_end(runtime, RUNTIME_SAMPLE);
 }
 
 /* What changes with time alone, or was found in the step before. */

@@ -1,13 +1,7 @@
 /*
  * See checkpoint.h.
  *
- * Writing has three parts.  One rank lays the whole file out and gives it its space on the
- * disk, so that a full disk, a quota or a file-size limit shows itself where it is an error
- * of one process, not in the midst of a collective call, where MPI's files may hang.  Then
- * all ranks fill in their slices through parallel HDF5; each rank writes its own contiguous
- * run of each data set, so there is nothing for collective buffering to gather, and a rank
- * whose disk fails keeps nobody waiting.  Last the file is forced to the disk and renamed.
- * Because one rank alone decides the layout, bytes cannot depend on the number of ranks.
+ * Written as store/shared_file.h says.
  *
  * Metadata carry HDF5's own checksums, rows those of store/table.h, the rest an attribute
  * `checksum`.  A drawback: the reserved space must be there beside the older checkpoints.
@@ -28,6 +22,7 @@
 #include "store/crc32.h"
 #include "store/file.h"
 #include "store/h5.h"
+#include "store/shared_file.h"
 #include "store/table.h"
 
 static const char FORMAT[] = "tremie checkpoint";
@@ -202,28 +197,6 @@ static void collect(struct table tables[N_TABLES], const struct comm *comm,
         table_arrange(&tables[k], comm, checkpoint->next_id);
 }
 
-/* -------------------------------------------------------------------------------- agreement */
-
-/* Did all go well on all ranks?  If not, rank 0 gets the first rank's reason.  Collective. */
-static bool all_well(const struct comm *comm, char **why)
-{
-    enum { TEXT = 512 };
-    if (comm_agree(comm, *why != NULL) == 0)
-        return true;
-    char own[TEXT] = "";
-    if (*why != NULL)
-        snprintf(own, sizeof own, "%s", *why);
-    char(*all)[TEXT] = array_allocate((size_t)comm->n_ranks, sizeof *all);
-    comm_gather_all(comm, own, all, sizeof own);
-    int q = 0;
-    while (q < comm->n_ranks - 1 && all[q][0] == '\0')
-        q++;
-    free(*why);
-    *why = array_string(all[q]);
-    free(all);
-    return false;
-}
-
 /* ---------------------------------------------------------------------------------- writing */
 
 static int64_t checksum(const void *bytes, size_t n)
@@ -277,104 +250,31 @@ static void put_monitors(struct h5 *h5, int n, const struct checkpoint_monitor *
     free(sums);
 }
 
-/* What the file takes at most, HDF5's own needs included. */
-static int64_t file_size(const struct checkpoint *checkpoint,
-                         const struct table tables[N_TABLES])
+/* What put_all() puts there takes at most. */
+static int64_t content_size(const struct checkpoint *checkpoint)
 {
-    enum { METADATA = 1 << 17, NOTE_SIZE = 2048 };
-    int64_t size = METADATA + (int64_t)strlen(checkpoint->job_text) +
-                   checkpoint->n_monitors * (int64_t)sizeof *checkpoint->monitors +
-                   checkpoint->notes.n * (int64_t)NOTE_SIZE;
+    enum { NOTE_SIZE = 2048 };
+    return (int64_t)strlen(checkpoint->job_text) +
+           checkpoint->n_monitors * (int64_t)sizeof *checkpoint->monitors +
+           checkpoint->notes.n * (int64_t)NOTE_SIZE;
+}
+
+/* What a new file is laid out from. */
+struct content {
+    const struct checkpoint *checkpoint;
+    const struct checkpoint_monitor *totals;
+    const struct table *tables;
+};
+
+static void put_all(struct h5 *h5, const void *from)
+{
+    const struct content *content = from;
+    put_run(h5, content->checkpoint, content->tables);
+    put_monitors(h5, content->checkpoint->n_monitors, content->totals);
+    notes_put(&content->checkpoint->notes, h5);
+    h5_group(h5, "/checksums");
     for (int k = 0; k < N_TABLES; k++)
-        size += table_file_size(&tables[k]);
-    return size;
-}
-
-/* The whole file except rows, with space for these.  Returns NULL or the reason.  Local. */
-static char *lay_out(const char *path, const struct checkpoint *checkpoint,
-                     const struct checkpoint_monitor *totals,
-                     const struct table tables[N_TABLES])
-{
-    unlink(path);
-    /* HDF5 gives this space back when it creates the file; but it has been there. */
-    char *why = file_reserve(path, file_size(checkpoint, tables));
-    if (why != NULL)
-        return why;
-    struct h5 h5;
-    h5_create(&h5, path);
-    put_run(&h5, checkpoint, tables);
-    put_monitors(&h5, checkpoint->n_monitors, totals);
-    notes_put(&checkpoint->notes, &h5);
-    h5_group(&h5, "/checksums");
-    for (int k = 0; k < N_TABLES; k++)
-        table_declare(&tables[k], &h5);
-    h5_save(&h5, path);
-    return h5.why;
-}
-
-static void say_why(const char *path, const char *why)
-{
-    report_error(
-        "cannot write the checkpoint %s: %s; earlier ones are untouched: free some space or "
-        "mend the disk, then run the same command again",
-        path, why);
-}
-
-/* Ends the program.  Parallel HDF5 can neither close nor forget a file when a part of it
- * failed on some rank; that disk has failed after it had promised the space. */
-static _Noreturn void abandon(const struct comm *comm, const char *path, const char *temporary,
-                              const char *why)
-{
-    if (comm->rank == 0) {
-        unlink(temporary);
-        say_why(path, why);
-    } else {
-        sleep(1); /* rank 0 speaks first, if it can */
-    }
-    fflush(NULL);
-    MPI_Abort(comm->mpi, REPORT_STORAGE);
-    _exit(REPORT_STORAGE);
-}
-
-/* Every rank's rows, forced to the disk.  Returns NULL or this rank's reason.  Collective. */
-static char *fill_in(const struct comm *comm, const char *path, const char *temporary,
-                     const struct table tables[N_TABLES])
-{
-    struct h5 h5;
-    h5_open_shared(&h5, temporary, comm);
-    if (comm_agree(comm, h5.file >= 0) == 0)
-        return h5.why;
-    for (int k = 0; k < N_TABLES; k++)
-        table_write(&tables[k], &h5);
-    if (!all_well(comm, &h5.why))
-        abandon(comm, path, temporary, h5.why);
-    h5_close(&h5);
-    if (h5.why != NULL)
-        abandon(comm, path, temporary, h5.why);
-    return file_sync(temporary);
-}
-
-static char *write_file(const struct comm *comm, const char *path,
-                        const struct checkpoint *checkpoint,
-                        const struct checkpoint_monitor *totals,
-                        const struct table tables[N_TABLES])
-{
-    char *temporary = file_temporary(path), *why = NULL;
-    if (comm->rank == 0)
-        why = lay_out(temporary, checkpoint, totals, tables);
-    bool well = all_well(comm, &why);
-    if (well) {
-        why = fill_in(comm, path, temporary, tables);
-        well = all_well(comm, &why);
-    }
-    if (well) {
-        why = comm->rank == 0 ? file_publish(temporary, path) : NULL;
-        well = all_well(comm, &why);
-    }
-    if (!well && comm->rank == 0)
-        unlink(temporary);
-    free(temporary);
-    return why;
+        table_declare(&content->tables[k], h5);
 }
 
 /* Collective. */
@@ -389,7 +289,6 @@ static void check_notes(const struct comm *comm, const struct notes *notes)
 int checkpoint_write(const struct comm *comm, const char *path,
                      const struct checkpoint *checkpoint)
 {
-    file_survive_size_limit();
     check_notes(comm, &checkpoint->notes);
     struct table tables[N_TABLES];
     collect(tables, comm, checkpoint);
@@ -399,13 +298,21 @@ int checkpoint_write(const struct comm *comm, const char *path,
         totals[i] = checkpoint->monitors[i];
         exact_sum_reduce(comm, &totals[i].sum, 1);
     }
-    char *why = write_file(comm, path, checkpoint, totals, tables);
-    if (why != NULL)
-        say_why(path, why);
-    const int status = why != NULL ? REPORT_STORAGE : REPORT_FINISHED;
+    const struct content content = {checkpoint, totals, tables};
+    const struct shared_file file = {
+        .path = path,
+        .what = "checkpoint",
+        .remedy = "earlier ones are untouched: free some space or mend the disk, then run the "
+                  "same command again",
+        .lay_out = put_all,
+        .content = &content,
+        .size = content_size(checkpoint),
+        .n_tables = N_TABLES,
+        .tables = tables,
+    };
+    const int status = shared_file_write(comm, &file);
     tables_clear(tables);
     free(totals);
-    free(why);
     return status;
 }
 
@@ -608,11 +515,11 @@ static char *read_file(const struct comm *comm, const char *path, struct checkpo
                        struct table tables[N_TABLES])
 {
     char *why = comm->rank == 0 ? read_header(path, checkpoint, tables) : NULL;
-    if (!all_well(comm, &why))
+    if (!shared_file_all_well(comm, &why))
         return why;
     share_header(comm, checkpoint, tables);
     why = read_rows(comm, path, checkpoint, tables);
-    if (!all_well(comm, &why))
+    if (!shared_file_all_well(comm, &why))
         return why;
     char *lost[2] = {table_follow(&tables[CONTACTS], comm, &tables[SPHERES], 2),
                      table_follow(&tables[FACET_CONTACTS], comm, &tables[SPHERES], 1)};
@@ -622,7 +529,7 @@ static char *read_file(const struct comm *comm, const char *path, struct checkpo
         why = lost[1];
     else
         free(lost[1]);
-    if (all_well(comm, &why))
+    if (shared_file_all_well(comm, &why))
         hand_over(checkpoint, tables);
     return why;
 }

@@ -24,6 +24,8 @@
 #include "store/file.h"
 
 enum { TRANSFER_MAX = 1 << 29, CHUNK_ROWS = 8192, NAME_MAX_LENGTH = 512 };
+/* Deflate packs no more than so many bytes into one. */
+enum { PACKED_MOST = 1032 };
 
 /* --------------------------------------------------------------------------------- failures */
 
@@ -135,6 +137,7 @@ void h5_open_shared(struct h5 *h5, const char *path, const struct comm *comm)
     const hid_t access = access_properties();
     H5Pset_fapl_mpio(access, comm->mpi, MPI_INFO_NULL);
     h5->file = H5Fopen(path, H5F_ACC_RDWR, access);
+    h5->shared = true;
     if (h5->file < 0)
         fail_at(h5, "");
     H5Pclose(access);
@@ -301,6 +304,8 @@ static hid_t file_type(enum field_type type)
         return H5T_STD_I64LE;
     case FIELD_INT32:
         return H5T_STD_I32LE;
+    case FIELD_FLOAT:
+        return H5T_IEEE_F32LE;
     case FIELD_DOUBLE:
     default:
         return H5T_IEEE_F64LE;
@@ -314,6 +319,8 @@ static hid_t memory_type(enum field_type type)
         return H5T_NATIVE_INT64;
     case FIELD_INT32:
         return H5T_NATIVE_INT32;
+    case FIELD_FLOAT:
+        return H5T_NATIVE_FLOAT;
     case FIELD_DOUBLE:
     default:
         return H5T_NATIVE_DOUBLE;
@@ -397,6 +404,40 @@ void h5_declare_rows(struct h5 *h5, const char *path, const struct field *field,
     H5Pclose(creation);
 }
 
+void h5_declare_packed_rows(struct h5 *h5, const char *path, const struct field *field,
+                            int64_t n)
+{
+    enum { LEVEL = 4 };
+    const hsize_t chunk[2] = {(hsize_t)(n < CHUNK_ROWS ? n : CHUNK_ROWS),
+                              (hsize_t)field->width};
+    if (h5->why != NULL)
+        return;
+    const hid_t creation = H5Pcreate(H5P_DATASET_CREATE);
+    H5Pset_obj_track_times(creation, false);
+    if (n > 0) {
+        H5Pset_chunk(creation, field->width > 1 ? 2 : 1, chunk);
+        H5Pset_shuffle(creation);
+        H5Pset_deflate(creation, LEVEL);
+    }
+    declare(h5, path, field, n, creation);
+    H5Pclose(creation);
+}
+
+void h5_link(struct h5 *h5, const char *path, const char *file, const char *object)
+{
+    if (h5->why == NULL &&
+        H5Lcreate_external(file, object, h5->file, path, H5P_DEFAULT, H5P_DEFAULT) < 0)
+        fail_at(h5, path);
+}
+
+static bool is_packed(hid_t set)
+{
+    const hid_t creation = H5Dget_create_plist(set);
+    const bool packed = H5Pget_layout(creation) == H5D_CHUNKED;
+    H5Pclose(creation);
+    return packed;
+}
+
 /* The shape of a data set as rows x width; false when it has neither one nor two dimensions. */
 static bool shape_of(hid_t set, int64_t *n, int64_t *width)
 {
@@ -441,14 +482,43 @@ int64_t h5_count_rows(struct h5 *h5, const char *path, const struct field *field
     const hid_t set = open_rows(h5, path, field, &n);
     if (set < 0)
         return 0;
-    H5Dclose(set);
     /* So that nobody asks for memory that a damaged number names. */
     hsize_t size = 0;
-    if (H5Fget_filesize(h5->file, &size) < 0)
+    const hid_t file = H5Iget_file_id(set); /* a link's is another one */
+    if (file < 0 || H5Fget_filesize(file, &size) < 0)
         fail_at(h5, path);
+    if (is_packed(set))
+        size *= PACKED_MOST;
     if (h5->why == NULL && (hsize_t)n > size / field_size(field))
         h5_fail(h5, "%s has more rows than the file can hold", path);
+    if (file >= 0)
+        H5Fclose(file);
+    H5Dclose(set);
     return h5->why == NULL ? n : 0;
+}
+
+int64_t h5_find_rows(struct h5 *h5, const char *path, struct field *field)
+{
+    static const enum field_type types[] = {FIELD_DOUBLE, FIELD_INT64, FIELD_INT32,
+                                            FIELD_FLOAT};
+    enum { N_TYPES = sizeof types / sizeof *types };
+    const hid_t set = h5->why == NULL ? H5Dopen2(h5->file, path, H5P_DEFAULT) : -1;
+    if (set < 0) {
+        fail_at(h5, path);
+        return 0;
+    }
+    int64_t n, width;
+    const hid_t type = H5Dget_type(set);
+    int k = 0;
+    while (k < N_TYPES && H5Tequal(type, file_type(types[k])) <= 0)
+        k++;
+    if (!shape_of(set, &n, &width) || k == N_TYPES || width < 1 || width > INT16_MAX)
+        h5_fail(h5, "%s has a type or shape of its own", path);
+    field->type = types[k < N_TYPES ? k : 0];
+    field->width = (int)width;
+    H5Tclose(type);
+    H5Dclose(set);
+    return h5_count_rows(h5, path, field);
 }
 
 /* Moves rows begin .. begin + n - 1 between file and memory, in pieces that MPI's int counts
@@ -478,6 +548,29 @@ static void transfer(struct h5 *h5, hid_t set, const struct field *field, int64_
     H5Sclose(space);
 }
 
+/* All ranks together, those without rows too: what packs them waits for all. */
+static void transfer_packed(struct h5 *h5, hid_t set, const struct field *field, int64_t begin,
+                            int64_t n, const void *rows)
+{
+    const hsize_t start[2] = {(hsize_t)begin, 0};
+    const hsize_t count[2] = {(hsize_t)n, (hsize_t)field->width};
+    const hid_t space = H5Dget_space(set), how = H5Pcreate(H5P_DATASET_XFER);
+    const hid_t memory = H5Screate_simple(field->width > 1 ? 2 : 1, count, NULL);
+    const hid_t type = memory_type(field->type);
+    H5Pset_dxpl_mpio(how, H5FD_MPIO_COLLECTIVE);
+    if (n > 0)
+        H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);
+    else
+        H5Sselect_none(space);
+    if (n == 0)
+        H5Sselect_none(memory);
+    if (H5Dwrite(set, type, memory, space, how, rows) < 0)
+        fail_at(h5, "");
+    H5Sclose(memory);
+    H5Sclose(space);
+    H5Pclose(how);
+}
+
 static void move_rows(struct h5 *h5, const char *path, const struct field *field, int64_t begin,
                       int64_t n, void *rows, bool write)
 {
@@ -487,6 +580,8 @@ static void move_rows(struct h5 *h5, const char *path, const struct field *field
         return;
     if (begin < 0 || n < 0 || begin > n_there || n > n_there - begin)
         h5_fail(h5, "%s has %lld rows, fewer than it should have", path, (long long)n_there);
+    else if (write && h5->shared && is_packed(set))
+        transfer_packed(h5, set, field, begin, n, rows);
     else
         transfer(h5, set, field, begin, n, rows, write);
     H5Dclose(set);

@@ -9,7 +9,8 @@
  *
  * Row data lie contiguous and unfiltered, in space that exists once h5_save() has returned;
  * writing rows changes none of the rest.  So one process may lay the file out and many fill it
- * in.
+ * in.  Packed rows (shuffled and deflated, which loses nothing) get their space as they are
+ * written.
  */
 #ifndef TREMIE_STORE_H5_H
 #define TREMIE_STORE_H5_H
@@ -25,6 +26,7 @@ struct comm;
 struct h5 {
     int64_t file; /* HDF5's handle, negative when closed */
     int memory;   /* descriptor of a new file's memory, negative when there is none */
+    bool shared;  /* opened by all ranks */
     char *why;    /* the first failure, NULL while all is well; its user frees it */
 };
 
@@ -60,13 +62,23 @@ char *h5_get_document(struct h5 *h5, const char *path);
 
 /* Lays out n rows of a field, with its unit and description. */
 void h5_declare_rows(struct h5 *h5, const char *path, const struct field *field, int64_t n);
-/* Rows begin .. begin + n - 1, side by side in memory; none when n is 0. */
+/* The same for packed rows. */
+void h5_declare_packed_rows(struct h5 *h5, const char *path, const struct field *field,
+                            int64_t n);
+/* Rows begin .. begin + n - 1, side by side in memory; none when n is 0.  Packed rows of a
+ * shared file are written by all ranks together, 2 GiB each at most: collective. */
 void h5_write_rows(struct h5 *h5, const char *path, const struct field *field, int64_t begin,
                    int64_t n, const void *rows);
 void h5_read_rows(struct h5 *h5, const char *path, const struct field *field, int64_t begin,
                   int64_t n, void *rows);
 /* The number of rows there are, after comparing type and width; 0 after a failure. */
 int64_t h5_count_rows(struct h5 *h5, const char *path, const struct field *field);
+/* Type and width of a data set (the caller's name and unit stay); its number of rows, 0 after
+ * a failure. */
+int64_t h5_find_rows(struct h5 *h5, const char *path, struct field *field);
+
+/* Makes `path` stand for an object of another file, named relative to this file's folder. */
+void h5_link(struct h5 *h5, const char *path, const char *file, const char *object);
 
 /* A whole column of doubles with HDF5's own Fletcher32 checksum, which any reader verifies. */
 void h5_put_column(struct h5 *h5, const char *path, const struct field *field, int64_t n,

@@ -260,6 +260,8 @@ int run_folder_rewind(const struct run_folder *folder, int64_t step)
     int status = set_later_aside(folder, "checkpoints", step, &aside, &n_moved);
     if (status == REPORT_FINISHED)
         status = set_later_aside(folder, "series", step, &aside, &n_moved);
+    if (status == REPORT_FINISHED)
+        status = set_later_aside(folder, "snapshots", step, &aside, &n_moved);
     if (status == REPORT_FINISHED && n_moved > 0)
         report_say("%d files of steps after %" PRId64 " are now in %s", n_moved, step, aside);
     free(aside);
@@ -323,6 +325,9 @@ static void remove_temporaries(const struct run_folder *folder)
         file_remove_temporaries(path);
         free(path);
     }
+    char *snapshots = path_in(folder->path, "snapshots");
+    file_remove_temporaries(snapshots);
+    free(snapshots);
 }
 
 /* With the lock held: brings the folder's content in line with the job. */

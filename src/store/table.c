@@ -6,7 +6,6 @@
  */
 #include "store/table.h"
 
-#include <stdbool.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -149,7 +148,10 @@ void table_declare(const struct table *table, struct h5 *h5)
     h5_group(h5, checksums);
     for (int k = 0; k < table->n_columns; k++) {
         char *path = column_path(table, k), *sums = checksum_path(table, k);
-        h5_declare_rows(h5, path, &table->columns[k].field, table->n_total);
+        if (table->packed)
+            h5_declare_packed_rows(h5, path, &table->columns[k].field, table->n_total);
+        else
+            h5_declare_rows(h5, path, &table->columns[k].field, table->n_total);
         h5_declare_rows(h5, sums, &CHECKSUM, n_blocks(table->n_total));
         free(path);
         free(sums);
@@ -172,7 +174,7 @@ static int64_t *block_sums(const unsigned char *rows, size_t size, int64_t n)
     return sums;
 }
 
-static void write_column(const struct table *table, int k, struct h5 *h5)
+void table_write(const struct table *table, int k, struct h5 *h5)
 {
     const struct table_column *column = &table->columns[k];
     const size_t size = field_size(&column->field);
@@ -187,12 +189,6 @@ static void write_column(const struct table *table, int k, struct h5 *h5)
     free(sums_path);
     free(sums);
     free(rows);
-}
-
-void table_write(const struct table *table, struct h5 *h5)
-{
-    for (int k = 0; k < table->n_columns; k++)
-        write_column(table, k, h5);
 }
 
 void table_measure(struct table *table, struct h5 *h5)

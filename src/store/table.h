@@ -12,6 +12,7 @@
 #ifndef TREMIE_STORE_TABLE_H
 #define TREMIE_STORE_TABLE_H
 
+#include <stdbool.h>
 #include <stddef.h>
 #include <stdint.h>
 #include <string.h>
@@ -34,6 +35,7 @@ struct table {
     struct table_column columns[TABLE_COLUMNS_MAX];
     size_t record_size;                           /* a record begins with its int64 id */
     int (*compare)(const void *a, const void *b); /* by key; the id comes first in it */
+    bool packed;                                  /* columns are compressed in the file */
     int64_t n_total;                              /* records on all ranks */
     int64_t begin, n;                             /* those here: begin .. begin + n - 1 */
     unsigned char *records;
@@ -52,8 +54,8 @@ void table_arrange(struct table *table, const struct comm *comm, int64_t n_ids);
 int64_t table_file_size(const struct table *table);
 /* Lays out all n_total rows: one process.  Local. */
 void table_declare(const struct table *table, struct h5 *h5);
-/* Writes this rank's slice and its checksums.  Local. */
-void table_write(const struct table *table, struct h5 *h5);
+/* Writes column k of this rank's slice and its checksums.  Local; collective where packed. */
+void table_write(const struct table *table, int k, struct h5 *h5);
 
 /* Finds n_total, with all columns and checksums compared in type and length.  Local. */
 void table_measure(struct table *table, struct h5 *h5);

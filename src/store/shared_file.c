@@ -1,0 +1,153 @@
+/*
+ * See shared_file.h.
+ *
+ * Writing has three parts.  One rank lays the whole file out and gives it its space on the
+ * disk, so that a full disk, a quota or a file-size limit shows itself where it is an error
+ * of one process, not in the midst of a collective call, where MPI's files may hang.  Then
+ * all ranks fill in their slices through parallel HDF5; each rank writes its own contiguous
+ * run of each data set, so there is nothing for collective buffering to gather, and a rank
+ * whose disk fails keeps nobody waiting.  Last the file is forced to the disk and renamed.
+ * Because one rank alone decides the layout, bytes cannot depend on the number of ranks.
+ *
+ * Packed tables are the exception: how long they are is known only when they are written, all
+ * ranks together.  For them as much space as they take unpacked is promised beyond the end of
+ * the laid-out file, and what is not needed is given back.  HDF5 allots pieces in the order in
+ * which they lie, so here too bytes do not depend on the number of ranks.
+ */
+#include "store/shared_file.h"
+
+#include <stdio.h>
+#include <stdlib.h>
+#include <unistd.h>
+
+#include "base/array.h"
+#include "base/comm.h"
+#include "base/report.h"
+#include "store/file.h"
+#include "store/h5.h"
+#include "store/table.h"
+
+bool shared_file_all_well(const struct comm *comm, char **why)
+{
+    enum { TEXT = 512 };
+    if (comm_agree(comm, *why != NULL) == 0)
+        return true;
+    char own[TEXT] = "";
+    if (*why != NULL)
+        snprintf(own, sizeof own, "%s", *why);
+    char(*all)[TEXT] = array_allocate((size_t)comm->n_ranks, sizeof *all);
+    comm_gather_all(comm, own, all, sizeof own);
+    int q = 0;
+    while (q < comm->n_ranks - 1 && all[q][0] == '\0')
+        q++;
+    free(*why);
+    *why = array_string(all[q]);
+    free(all);
+    return false;
+}
+
+static void say_why(const struct shared_file *file, const char *why)
+{
+    report_error("cannot write the %s %s: %s; %s", file->what, file->path, why, file->remedy);
+}
+
+static int64_t tables_size(const struct shared_file *file, bool packed)
+{
+    int64_t size = 0;
+    for (int t = 0; t < file->n_tables; t++)
+        if (file->tables[t].packed || !packed)
+            size += table_file_size(&file->tables[t]);
+    return size;
+}
+
+/* The whole file except rows, with space for these.  Returns NULL or the reason.  Local. */
+static char *lay_out(const char *path, const struct shared_file *file)
+{
+    enum { METADATA = 1 << 17 };
+    unlink(path);
+    /* HDF5 gives this space back when it creates the file; but it has been there. */
+    char *why = file_reserve(path, METADATA + file->size + tables_size(file, false));
+    if (why != NULL)
+        return why;
+    struct h5 h5;
+    h5_create(&h5, path);
+    file->lay_out(&h5, file->content);
+    h5_save(&h5, path);
+    const int64_t packed = tables_size(file, true);
+    if (h5.why == NULL && packed > 0)
+        h5.why = file_promise(path, METADATA + packed);
+    return h5.why;
+}
+
+/* Ends the program.  Parallel HDF5 can neither close nor forget a file when a part of it
+ * failed on some rank; that disk has failed after it had promised the space. */
+static _Noreturn void abandon(const struct comm *comm, const struct shared_file *file,
+                              const char *temporary, const char *why)
+{
+    if (comm->rank == 0) {
+        unlink(temporary);
+        say_why(file, why);
+    } else {
+        sleep(1); /* rank 0 speaks first, if it can */
+    }
+    fflush(NULL);
+    MPI_Abort(comm->mpi, REPORT_STORAGE);
+    _exit(REPORT_STORAGE);
+}
+
+/* Every rank's rows, forced to the disk.  Returns NULL or this rank's reason.  Collective. */
+static char *fill_in(const struct comm *comm, const struct shared_file *file,
+                     const char *temporary)
+{
+    struct h5 h5;
+    h5_open_shared(&h5, temporary, comm);
+    if (comm_agree(comm, h5.file >= 0) == 0)
+        return h5.why;
+    for (int t = 0; t < file->n_tables; t++) {
+        for (int k = 0; k < file->tables[t].n_columns; k++) {
+            table_write(&file->tables[t], k, &h5);
+            /* Before the next column that all write together. */
+            if (file->tables[t].packed && !shared_file_all_well(comm, &h5.why))
+                abandon(comm, file, temporary, h5.why);
+        }
+    }
+    if (!shared_file_all_well(comm, &h5.why))
+        abandon(comm, file, temporary, h5.why);
+    h5_close(&h5);
+    if (h5.why != NULL)
+        abandon(comm, file, temporary, h5.why);
+    if (comm->rank == 0 && tables_size(file, true) > 0)
+        h5.why = file_settle(temporary);
+    return h5.why != NULL ? h5.why : file_sync(temporary);
+}
+
+static char *write_file(const struct comm *comm, const struct shared_file *file)
+{
+    char *temporary = file_temporary(file->path), *why = NULL;
+    if (comm->rank == 0)
+        why = lay_out(temporary, file);
+    bool well = shared_file_all_well(comm, &why);
+    if (well) {
+        why = fill_in(comm, file, temporary);
+        well = shared_file_all_well(comm, &why);
+    }
+    if (well) {
+        why = comm->rank == 0 ? file_publish(temporary, file->path) : NULL;
+        well = shared_file_all_well(comm, &why);
+    }
+    if (!well && comm->rank == 0)
+        unlink(temporary);
+    free(temporary);
+    return why;
+}
+
+int shared_file_write(const struct comm *comm, const struct shared_file *file)
+{
+    file_survive_size_limit();
+    char *why = write_file(comm, file);
+    if (why == NULL)
+        return REPORT_FINISHED;
+    say_why(file, why);
+    free(why);
+    return REPORT_STORAGE;
+}
