@@ -1,6 +1,6 @@
 # What every compiler and flavour shares.
 
-packages = ompi-c hdf5-openmpi yaml-0.1 libpng
+packages = ompi-c hdf5-openmpi yaml-0.1 libpng zlib
 # The libraries' headers are included as system headers: their warnings are not ours.
 CPPFLAGS := -D_GNU_SOURCE -Isrc $(subst -I,-isystem ,$(shell pkg-config --cflags $(packages) 2>/dev/null))
 LDLIBS := $(shell pkg-config --libs $(packages) 2>/dev/null) -lm

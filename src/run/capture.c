@@ -133,7 +133,7 @@ static void add_contacts(const struct simulation *sim, struct table *table)
     }
 }
 
-/* ------------------------------------------------------------------------------------ bodies */
+/* ---------------------------------------------------------------------------------- bodies */
 
 static void add_body(const struct simulation *sim, const struct body *body,
                      struct snapshot_body *shown)
@@ -171,7 +171,7 @@ static void add_bodies(const struct simulation *sim, struct snapshot *snapshot)
         add_body(sim, &sim->bodies.list[b], &snapshot->bodies[b]);
 }
 
-/* ------------------------------------------------------------------------------------- whole */
+/* ----------------------------------------------------------------------------------- whole */
 
 static char *add_line(char *lines, const char *name)
 {

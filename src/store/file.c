@@ -66,38 +66,6 @@ char *file_reserve(const char *path, int64_t n)
     return error != 0 ? reason(error) : NULL;
 }
 
-char *file_promise(const char *path, int64_t n)
-{
-    struct stat state;
-    const int descriptor = open(path, O_RDWR | O_CLOEXEC);
-    if (descriptor < 0)
-        return reason(errno);
-    int error = fstat(descriptor, &state) != 0 ||
-                        fallocate(descriptor, FALLOC_FL_KEEP_SIZE, state.st_size, n) != 0
-                    ? errno
-                    : 0;
-    if (error == EOPNOTSUPP || error == ENOSYS)
-        error = 0; /* as above */
-    close(descriptor);
-    return error != 0 ? reason(error) : NULL;
-}
-
-char *file_settle(const char *path)
-{
-    struct stat state;
-    const int descriptor = open(path, O_RDWR | O_CLOEXEC);
-    if (descriptor < 0)
-        return reason(errno);
-    /* Some file systems do nothing for a size that stays the same. */
-    const int error = fstat(descriptor, &state) != 0 ||
-                              ftruncate(descriptor, state.st_size + 1) != 0 ||
-                              ftruncate(descriptor, state.st_size) != 0
-                          ? errno
-                          : 0;
-    close(descriptor);
-    return error != 0 ? reason(error) : NULL;
-}
-
 /* Copies bytes begin .. end - 1; 0 or the error. */
 static int copy_bytes(int to, int from, off_t begin, off_t end)
 {

@@ -23,10 +23,6 @@ void file_remove_temporaries(const char *folder);
 
 /* Creates `path`, or keeps it, with disk space for n bytes. */
 char *file_reserve(const char *path, int64_t n);
-/* The same for n bytes beyond the end of a file, which stays where it is. */
-char *file_promise(const char *path, int64_t n);
-/* Gives back what such a file did not need of it. */
-char *file_settle(const char *path);
 /* Makes `path` a copy of an open file, forced to the disk, with disk space for its holes
  * too. */
 char *file_fill(const char *path, int source);

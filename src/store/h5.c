@@ -18,12 +18,19 @@
 #include <string.h>
 #include <sys/mman.h>
 #include <unistd.h>
+#include <zlib.h>
 
 #include "base/array.h"
 #include "base/comm.h"
+#include "base/report.h"
 #include "store/file.h"
 
-enum { TRANSFER_MAX = 1 << 29, CHUNK_ROWS = 8192, NAME_MAX_LENGTH = 512 };
+enum {
+    TRANSFER_MAX = 1 << 29,
+    CHUNK_ROWS = H5_PIECE_ROWS,
+    PACKING_LEVEL = 4,
+    NAME_MAX_LENGTH = 512
+};
 /* Deflate packs no more than so many bytes into one. */
 enum { PACKED_MOST = 1032 };
 
@@ -137,7 +144,6 @@ void h5_open_shared(struct h5 *h5, const char *path, const struct comm *comm)
     const hid_t access = access_properties();
     H5Pset_fapl_mpio(access, comm->mpi, MPI_INFO_NULL);
     h5->file = H5Fopen(path, H5F_ACC_RDWR, access);
-    h5->shared = true;
     if (h5->file < 0)
         fail_at(h5, "");
     H5Pclose(access);
@@ -407,7 +413,6 @@ void h5_declare_rows(struct h5 *h5, const char *path, const struct field *field,
 void h5_declare_packed_rows(struct h5 *h5, const char *path, const struct field *field,
                             int64_t n)
 {
-    enum { LEVEL = 4 };
     const hsize_t chunk[2] = {(hsize_t)(n < CHUNK_ROWS ? n : CHUNK_ROWS),
                               (hsize_t)field->width};
     if (h5->why != NULL)
@@ -417,10 +422,44 @@ void h5_declare_packed_rows(struct h5 *h5, const char *path, const struct field 
     if (n > 0) {
         H5Pset_chunk(creation, field->width > 1 ? 2 : 1, chunk);
         H5Pset_shuffle(creation);
-        H5Pset_deflate(creation, LEVEL);
+        H5Pset_deflate(creation, PACKING_LEVEL);
     }
     declare(h5, path, field, n, creation);
     H5Pclose(creation);
+}
+
+unsigned char *h5_pack(const struct field *field, int64_t n_total, int64_t n, const void *rows,
+                       size_t *size)
+{
+    const size_t width = (size_t)field->width, each = field_component_size(field->type);
+    const size_t n_rows = (size_t)(n_total < CHUNK_ROWS ? n_total : CHUNK_ROWS);
+    const size_t n_values = n_rows * width, n_given = (size_t)n * width;
+    const unsigned char *bytes = rows;
+    unsigned char *shuffled = array_allocate(n_values, each);
+    for (size_t i = 0; i < n_given; i++) /* all first bytes, then all second ones */
+        for (size_t k = 0; k < each; k++)
+            shuffled[k * n_values + i] = bytes[i * each + k];
+    uLongf length = compressBound((uLong)(n_values * each));
+    unsigned char *packed = array_allocate(length, 1);
+    const int status =
+        compress2(packed, &length, shuffled, (uLong)(n_values * each), PACKING_LEVEL);
+    CHECK(status == Z_OK, "zlib fails with status %d", status);
+    free(shuffled);
+    *size = length;
+    return packed;
+}
+
+void h5_put_packed(struct h5 *h5, const char *path, int64_t begin, size_t size,
+                   const void *packed)
+{
+    const hsize_t place[2] = {(hsize_t)begin, 0};
+    const hid_t set = h5->why == NULL ? H5Dopen2(h5->file, path, H5P_DEFAULT) : -1;
+    if (h5->why != NULL)
+        return;
+    if (set < 0 || H5Dwrite_chunk(set, H5P_DEFAULT, 0, place, size, packed) < 0)
+        fail_at(h5, path);
+    if (set >= 0)
+        H5Dclose(set);
 }
 
 void h5_link(struct h5 *h5, const char *path, const char *file, const char *object)
@@ -548,29 +587,6 @@ static void transfer(struct h5 *h5, hid_t set, const struct field *field, int64_
     H5Sclose(space);
 }
 
-/* All ranks together, those without rows too: what packs them waits for all. */
-static void transfer_packed(struct h5 *h5, hid_t set, const struct field *field, int64_t begin,
-                            int64_t n, const void *rows)
-{
-    const hsize_t start[2] = {(hsize_t)begin, 0};
-    const hsize_t count[2] = {(hsize_t)n, (hsize_t)field->width};
-    const hid_t space = H5Dget_space(set), how = H5Pcreate(H5P_DATASET_XFER);
-    const hid_t memory = H5Screate_simple(field->width > 1 ? 2 : 1, count, NULL);
-    const hid_t type = memory_type(field->type);
-    H5Pset_dxpl_mpio(how, H5FD_MPIO_COLLECTIVE);
-    if (n > 0)
-        H5Sselect_hyperslab(space, H5S_SELECT_SET, start, NULL, count, NULL);
-    else
-        H5Sselect_none(space);
-    if (n == 0)
-        H5Sselect_none(memory);
-    if (H5Dwrite(set, type, memory, space, how, rows) < 0)
-        fail_at(h5, "");
-    H5Sclose(memory);
-    H5Sclose(space);
-    H5Pclose(how);
-}
-
 static void move_rows(struct h5 *h5, const char *path, const struct field *field, int64_t begin,
                       int64_t n, void *rows, bool write)
 {
@@ -580,8 +596,6 @@ static void move_rows(struct h5 *h5, const char *path, const struct field *field
         return;
     if (begin < 0 || n < 0 || begin > n_there || n > n_there - begin)
         h5_fail(h5, "%s has %lld rows, fewer than it should have", path, (long long)n_there);
-    else if (write && h5->shared && is_packed(set))
-        transfer_packed(h5, set, field, begin, n, rows);
     else
         transfer(h5, set, field, begin, n, rows, write);
     H5Dclose(set);

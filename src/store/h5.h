@@ -9,8 +9,8 @@
  *
  * Row data lie contiguous and unfiltered, in space that exists once h5_save() has returned;
  * writing rows changes none of the rest.  So one process may lay the file out and many fill it
- * in.  Packed rows (shuffled and deflated, which loses nothing) get their space as they are
- * written.
+ * in.  Packed rows (shuffled and deflated, which loses nothing) come in pieces, into a new file
+ * only.
  */
 #ifndef TREMIE_STORE_H5_H
 #define TREMIE_STORE_H5_H
@@ -23,10 +23,11 @@
 
 struct comm;
 
+enum { H5_PIECE_ROWS = 8192 };
+
 struct h5 {
     int64_t file; /* HDF5's handle, negative when closed */
     int memory;   /* descriptor of a new file's memory, negative when there is none */
-    bool shared;  /* opened by all ranks */
     char *why;    /* the first failure, NULL while all is well; its user frees it */
 };
 
@@ -65,8 +66,7 @@ void h5_declare_rows(struct h5 *h5, const char *path, const struct field *field,
 /* The same for packed rows. */
 void h5_declare_packed_rows(struct h5 *h5, const char *path, const struct field *field,
                             int64_t n);
-/* Rows begin .. begin + n - 1, side by side in memory; none when n is 0.  Packed rows of a
- * shared file are written by all ranks together, 2 GiB each at most: collective. */
+/* Rows begin .. begin + n - 1, side by side in memory; none when n is 0. */
 void h5_write_rows(struct h5 *h5, const char *path, const struct field *field, int64_t begin,
                    int64_t n, const void *rows);
 void h5_read_rows(struct h5 *h5, const char *path, const struct field *field, int64_t begin,
@@ -76,6 +76,14 @@ int64_t h5_count_rows(struct h5 *h5, const char *path, const struct field *field
 /* Type and width of a data set (the caller's name and unit stay); its number of rows, 0 after
  * a failure. */
 int64_t h5_find_rows(struct h5 *h5, const char *path, struct field *field);
+
+/* A piece of n of the n_total rows as it stands in a file, `size` bytes; the caller frees it.  A
+ * piece is the H5_PIECE_ROWS rows from a multiple of as many on, or those that are left. */
+unsigned char *h5_pack(const struct field *field, int64_t n_total, int64_t n, const void *rows,
+                       size_t *size);
+/* Puts the piece that begins with row `begin` into rows that were declared packed. */
+void h5_put_packed(struct h5 *h5, const char *path, int64_t begin, size_t size,
+                   const void *packed);
 
 /* Makes `path` stand for an object of another file, named relative to this file's folder. */
 void h5_link(struct h5 *h5, const char *path, const char *file, const char *object);

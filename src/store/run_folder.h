@@ -37,8 +37,8 @@ char *run_folder_series_path(const struct run_folder *folder, int64_t step);
 int run_folder_checkpoints(const struct run_folder *folder, int64_t **steps);
 /* Keeps the newest `keep` checkpoints; series segments stay. */
 void run_folder_prune(const struct run_folder *folder, int keep);
-/* On resume from `step`: later checkpoints, segments and snapshots are moved into RUN/set_aside_N/
- * (said). */
+/* On resume from `step`: later checkpoints, segments and snapshots are moved into
+ * RUN/set_aside_N/ (said). */
 int run_folder_rewind(const struct run_folder *folder, int64_t step);
 /* Replaces RUN/status with this text (temporary name, rename). */
 void run_folder_status(const struct run_folder *folder, const char *text);

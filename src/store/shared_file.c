@@ -9,10 +9,9 @@
  * whose disk fails keeps nobody waiting.  Last the file is forced to the disk and renamed.
  * Because one rank alone decides the layout, bytes cannot depend on the number of ranks.
  *
- * Packed tables are the exception: how long they are is known only when they are written, all
- * ranks together.  For them as much space as they take unpacked is promised beyond the end of
- * the laid-out file, and what is not needed is given back.  HDF5 allots pieces in the order in
- * which they lie, so here too bytes do not depend on the number of ranks.
+ * Packed tables are the exception: how long they are is known only when they are packed.  Each
+ * rank packs its own rows and the one that lays out the file gets the result, so it needs as
+ * much memory.
  */
 #include "store/shared_file.h"
 
@@ -51,31 +50,36 @@ static void say_why(const struct shared_file *file, const char *why)
     report_error("cannot write the %s %s: %s; %s", file->what, file->path, why, file->remedy);
 }
 
-static int64_t tables_size(const struct shared_file *file, bool packed)
-{
-    int64_t size = 0;
-    for (int t = 0; t < file->n_tables; t++)
-        if (file->tables[t].packed || !packed)
-            size += table_file_size(&file->tables[t]);
-    return size;
-}
-
-/* The whole file except rows, with space for these.  Returns NULL or the reason.  Local. */
-static char *lay_out(const char *path, const struct shared_file *file)
+/* A new file in memory, for which there is room.  Local. */
+static void begin(struct h5 *h5, const char *path, const struct shared_file *file)
 {
     enum { METADATA = 1 << 17 };
+    int64_t size = METADATA + file->size;
+    for (int t = 0; t < file->n_tables; t++)
+        size += file->tables[t].packed ? 0 : table_file_size(&file->tables[t]);
     unlink(path);
     /* HDF5 gives this space back when it creates the file; but it has been there. */
-    char *why = file_reserve(path, METADATA + file->size + tables_size(file, false));
-    if (why != NULL)
-        return why;
-    struct h5 h5;
-    h5_create(&h5, path);
-    file->lay_out(&h5, file->content);
-    h5_save(&h5, path);
-    const int64_t packed = tables_size(file, true);
-    if (h5.why == NULL && packed > 0)
-        h5.why = file_promise(path, METADATA + packed);
+    char *why = file_reserve(path, size);
+    if (why != NULL) {
+        *h5 = (struct h5){.file = -1, .memory = -1, .why = why};
+        return;
+    }
+    h5_create(h5, path);
+    file->lay_out(h5, file->content);
+}
+
+/* The whole file except rows, with space for these; packed rows too.  Returns NULL or the
+ * reason.  Collective. */
+static char *lay_out(const struct comm *comm, const char *path, const struct shared_file *file)
+{
+    struct h5 h5 = {.file = -1, .memory = -1};
+    if (comm->rank == 0)
+        begin(&h5, path, file);
+    for (int t = 0; t < file->n_tables; t++)
+        if (file->tables[t].packed)
+            table_pack(&file->tables[t], comm, &h5);
+    if (comm->rank == 0 && h5.file >= 0)
+        h5_save(&h5, path);
     return h5.why;
 }
 
@@ -103,29 +107,20 @@ static char *fill_in(const struct comm *comm, const struct shared_file *file,
     h5_open_shared(&h5, temporary, comm);
     if (comm_agree(comm, h5.file >= 0) == 0)
         return h5.why;
-    for (int t = 0; t < file->n_tables; t++) {
-        for (int k = 0; k < file->tables[t].n_columns; k++) {
-            table_write(&file->tables[t], k, &h5);
-            /* Before the next column that all write together. */
-            if (file->tables[t].packed && !shared_file_all_well(comm, &h5.why))
-                abandon(comm, file, temporary, h5.why);
-        }
-    }
+    for (int t = 0; t < file->n_tables; t++)
+        table_write(&file->tables[t], &h5);
     if (!shared_file_all_well(comm, &h5.why))
         abandon(comm, file, temporary, h5.why);
     h5_close(&h5);
     if (h5.why != NULL)
         abandon(comm, file, temporary, h5.why);
-    if (comm->rank == 0 && tables_size(file, true) > 0)
-        h5.why = file_settle(temporary);
-    return h5.why != NULL ? h5.why : file_sync(temporary);
+    return file_sync(temporary);
 }
 
 static char *write_file(const struct comm *comm, const struct shared_file *file)
 {
-    char *temporary = file_temporary(file->path), *why = NULL;
-    if (comm->rank == 0)
-        why = lay_out(temporary, file);
+    char *temporary = file_temporary(file->path);
+    char *why = lay_out(comm, temporary, file);
     bool well = shared_file_all_well(comm, &why);
     if (well) {
         why = fill_in(comm, file, temporary);

@@ -42,10 +42,11 @@ static int64_t n_blocks(int64_t n_rows)
 }
 
 /* First row of rank q's slice. */
-static int64_t slice_begin(int64_t n_total, int q, int n_ranks)
+static int64_t slice_begin(const struct table *table, int q, int n_ranks)
 {
-    const int64_t row = n_blocks(n_total) * q / n_ranks * TABLE_BLOCK;
-    return row < n_total ? row : n_total;
+    const int64_t unit = table->packed ? H5_PIECE_ROWS : TABLE_BLOCK;
+    const int64_t row = (table->n_total + unit - 1) / unit * q / n_ranks * unit;
+    return row < table->n_total ? row : table->n_total;
 }
 
 static unsigned char *record(const struct table *table, int64_t i)
@@ -99,7 +100,7 @@ static void send_by_row(struct table *table, struct comm_mail *mail, const struc
     const int64_t first = comm_sum_before(comm, table->n);
     comm_mail_begin(mail);
     for (int64_t i = 0, q = 0; i < table->n; i++) {
-        while (first + i >= slice_begin(table->n_total, (int)q + 1, comm->n_ranks))
+        while (first + i >= slice_begin(table, (int)q + 1, comm->n_ranks))
             q++;
         comm_mail_pack(mail, (int)q, record(table, i), table->record_size);
     }
@@ -116,7 +117,7 @@ void table_arrange(struct table *table, const struct comm *comm, int64_t n_ids)
     sort(table);
     send_by_row(table, &mail, comm);
     comm_mail_clear(&mail);
-    table->begin = slice_begin(table->n_total, comm->rank, comm->n_ranks);
+    table->begin = slice_begin(table, comm->rank, comm->n_ranks);
 }
 
 /* ------------------------------------------------------------------------------------ files */
@@ -174,21 +175,89 @@ static int64_t *block_sums(const unsigned char *rows, size_t size, int64_t n)
     return sums;
 }
 
-void table_write(const struct table *table, int k, struct h5 *h5)
+/* The column's rows side by side; the caller frees them. */
+static unsigned char *gather_column(const struct table *table, int k)
 {
     const struct table_column *column = &table->columns[k];
     const size_t size = field_size(&column->field);
     unsigned char *rows = array_allocate((size_t)table->n, size);
     for (int64_t i = 0; i < table->n; i++)
         memcpy(rows + (size_t)i * size, record(table, i) + column->offset, size);
+    return rows;
+}
+
+static void write_column(const struct table *table, int k, struct h5 *h5)
+{
+    const struct table_column *column = &table->columns[k];
+    const size_t size = field_size(&column->field);
+    unsigned char *rows = gather_column(table, k);
     int64_t *sums = block_sums(rows, size, table->n);
     char *path = column_path(table, k), *sums_path = checksum_path(table, k);
-    h5_write_rows(h5, path, &column->field, table->begin, table->n, rows);
+    if (!table->packed)
+        h5_write_rows(h5, path, &column->field, table->begin, table->n, rows);
     h5_write_rows(h5, sums_path, &CHECKSUM, n_blocks(table->begin), n_blocks(table->n), sums);
     free(path);
     free(sums_path);
     free(sums);
     free(rows);
+}
+
+void table_write(const struct table *table, struct h5 *h5)
+{
+    for (int k = 0; k < table->n_columns; k++)
+        write_column(table, k, h5);
+}
+
+/* What says of a packed piece where it belongs. */
+struct piece {
+    int64_t begin, size;
+};
+
+static void send_pieces(const struct table *table, int k, struct comm_mail *mail)
+{
+    const struct field *field = &table->columns[k].field;
+    unsigned char *rows = gather_column(table, k);
+    for (int64_t begin = 0; begin < table->n; begin += H5_PIECE_ROWS) {
+        const int64_t left = table->n - begin;
+        size_t size;
+        unsigned char *packed =
+            h5_pack(field, table->n_total, left < H5_PIECE_ROWS ? left : H5_PIECE_ROWS,
+                    rows + (size_t)begin * field_size(field), &size);
+        const struct piece piece = {table->begin + begin, (int64_t)size};
+        comm_mail_pack(mail, 0, &piece, sizeof piece);
+        comm_mail_pack(mail, 0, packed, size);
+        free(packed);
+    }
+    free(rows);
+}
+
+static void put_pieces(const struct table *table, int k, struct comm_mail *mail, int from,
+                       struct h5 *h5)
+{
+    char *path = column_path(table, k);
+    while (comm_mail_waits(mail, from)) {
+        struct piece piece;
+        comm_mail_unpack(mail, from, &piece, sizeof piece);
+        unsigned char *packed = array_allocate((size_t)piece.size, 1);
+        comm_mail_unpack(mail, from, packed, (size_t)piece.size);
+        h5_put_packed(h5, path, piece.begin, (size_t)piece.size, packed);
+        free(packed);
+    }
+    free(path);
+}
+
+void table_pack(const struct table *table, const struct comm *comm, struct h5 *h5)
+{
+    struct comm_mail mail;
+    comm_mail_init(&mail, comm);
+    for (int k = 0; k < table->n_columns; k++) {
+        comm_mail_begin(&mail);
+        send_pieces(table, k, &mail);
+        comm_mail_exchange(&mail, comm);
+        for (int q = 0; q < comm->n_ranks && comm->rank == 0; q++)
+            put_pieces(table, k, &mail, q, h5);
+    }
+    comm_mail_clear(&mail);
 }
 
 void table_measure(struct table *table, struct h5 *h5)
@@ -232,8 +301,8 @@ static void read_column(struct table *table, int k, struct h5 *h5)
 
 void table_read(struct table *table, struct h5 *h5, const struct comm *comm, int64_t n_ids)
 {
-    table->begin = slice_begin(table->n_total, comm->rank, comm->n_ranks);
-    table->n = slice_begin(table->n_total, comm->rank + 1, comm->n_ranks) - table->begin;
+    table->begin = slice_begin(table, comm->rank, comm->n_ranks);
+    table->n = slice_begin(table, comm->rank + 1, comm->n_ranks) - table->begin;
     free(table->records);
     table->records = array_allocate((size_t)table->n, table->record_size);
     for (int k = 0; k < table->n_columns; k++)

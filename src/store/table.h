@@ -5,8 +5,9 @@
  *
  * Beside each column stand CRC-32 checksums of its blocks of TABLE_BLOCK rows, in /checksums
  * under the same path.  Slices are whole blocks, so every block is written, summed and verified
- * by one rank, and neither blocks nor bytes depend on the number of ranks.  A drawback: below
- * TABLE_BLOCK rows a rank some ranks have nothing to do.  All that one rank sends another must
+ * by one rank, and neither blocks nor bytes depend on the number of ranks; those of a packed
+ * table are whole pieces (store/h5.h), which their ranks pack.  A drawback: below TABLE_BLOCK
+ * rows a rank, or a piece, some ranks have nothing to do.  All that one rank sends another must
  * fit 2 GiB.
  */
 #ifndef TREMIE_STORE_TABLE_H
@@ -54,8 +55,11 @@ void table_arrange(struct table *table, const struct comm *comm, int64_t n_ids);
 int64_t table_file_size(const struct table *table);
 /* Lays out all n_total rows: one process.  Local. */
 void table_declare(const struct table *table, struct h5 *h5);
-/* Writes column k of this rank's slice and its checksums.  Local; collective where packed. */
-void table_write(const struct table *table, int k, struct h5 *h5);
+/* Puts the rows of a packed table into the new file that rank 0 lays out; the others' `h5` is not
+ * used.  Collective. */
+void table_pack(const struct table *table, const struct comm *comm, struct h5 *h5);
+/* Writes this rank's slice, unless packed, and its checksums.  Local. */
+void table_write(const struct table *table, struct h5 *h5);
 
 /* Finds n_total, with all columns and checksums compared in type and length.  Local. */
 void table_measure(struct table *table, struct h5 *h5);
