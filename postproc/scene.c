@@ -2,6 +2,7 @@
 #include "scene.h"
 
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 
 #include "base/array.h"
@@ -9,6 +10,7 @@
 #include "base/report.h"
 #include "store/body_notes.h"
 #include "store/file.h"
+#include "store/snapshot.h"
 #include "store/surface_file.h"
 
 char *scene_newest(const char *run_folder)
@@ -56,6 +58,102 @@ static void read_job(struct scene *scene, const char *path)
     mistakes_clear(&mistakes);
 }
 
+/* ------------------------------------------------------------------------------- snapshots */
+
+/* The numbers of a column of sphere i; they stay 0 where there is none. */
+static void get(const struct table *table, int64_t i, int field, double *values)
+{
+    const int column = snapshot_column(table, snapshot_fields[field].name);
+    for (int k = 0; k < snapshot_fields[field].width; k++)
+        values[k] = 0.0;
+    if (column >= 0)
+        snapshot_get(table, i, column, values);
+}
+
+static void take_spheres(struct spheres *spheres, const struct table *table)
+{
+    spheres->n_owned = spheres->n_all = (int)table->n;
+    spheres_reserve(spheres, (int)table->n);
+    for (int i = 0; i < spheres->n_owned; i++) {
+        double id, material, group;
+        get(table, i, SNAPSHOT_ID, &id);
+        get(table, i, SNAPSHOT_POSITION, sphere_position(spheres, i));
+        get(table, i, SNAPSHOT_RADIUS, &spheres->motion[i].lane[3]);
+        get(table, i, SNAPSHOT_VELOCITY, sphere_velocity(spheres, i));
+        get(table, i, SNAPSHOT_ANGULAR_VELOCITY, sphere_angular_velocity(spheres, i));
+        get(table, i, SNAPSHOT_MATERIAL, &material);
+        get(table, i, SNAPSHOT_GROUP, &group);
+        spheres->id[i] = (int64_t)id;
+        spheres->material[i] = (int32_t)material;
+        spheres->group[i] = (int32_t)group;
+    }
+}
+
+static void take_body(struct body *body, const struct snapshot_body *shown)
+{
+    const int n_points = (int)shown->n_points, n_triangles = (int)shown->n_triangles;
+    struct vec3 *points = array_allocate((size_t)n_points, sizeof *points);
+    int(*facets)[4] = array_allocate((size_t)n_triangles, sizeof *facets);
+    for (int v = 0; v < n_points; v++)
+        points[v] =
+            (struct vec3){shown->points[v][0], shown->points[v][1], shown->points[v][2]};
+    for (int f = 0; f < n_triangles; f++) {
+        for (int k = 0; k < 3; k++)
+            facets[f][k] = shown->triangles[f][k];
+        facets[f][3] = -1;
+    }
+    *body = (struct body){.name = array_string(shown->name)};
+    mesh_build(&body->mesh, n_points, points, n_triangles, (const int(*)[4])facets);
+    free(points);
+    free(facets);
+}
+
+/* The job of the folder in whose snapshots/ the file lies, for names; without a word where
+ * there is none. */
+static void find_job(struct scene *scene, const char *path)
+{
+    enum { JOB_TEXT_MAX = 1 << 26 };
+    const char *slash = strrchr(path, '/');
+    char *job = slash != NULL ? array_format("%.*s/../job.yaml", (int)(slash - path), path)
+                              : array_string("../job.yaml");
+    char *text = NULL, *why = file_read(job, JOB_TEXT_MAX, &text);
+    struct mistakes mistakes;
+    mistakes_init(&mistakes);
+    scene->has_job = why == NULL && job_read_text(&scene->job, job, text, &mistakes);
+    mistakes_clear(&mistakes);
+    free(why);
+    free(text);
+    free(job);
+}
+
+static int read_snapshot(struct scene *scene, const char *path)
+{
+    struct snapshot snapshot;
+    char *why = snapshot_read(path, &snapshot);
+    if (why != NULL) {
+        report_error("cannot read the snapshot %s: %s; use another one", path, why);
+        free(why);
+        return REPORT_STORAGE;
+    }
+    *scene = (struct scene){0};
+    spheres_init(&scene->spheres);
+    take_spheres(&scene->spheres, &snapshot.spheres);
+    scene->checkpoint = (struct checkpoint){.step = snapshot.step,
+                                            .dt = snapshot.dt,
+                                            .next_id = snapshot.next_id,
+                                            .title = array_string(snapshot.title),
+                                            .spheres = &scene->spheres};
+    scene->bodies.n = snapshot.n_bodies;
+    scene->bodies.list = array_allocate((size_t)snapshot.n_bodies, sizeof *scene->bodies.list);
+    for (int b = 0; b < snapshot.n_bodies; b++)
+        take_body(&scene->bodies.list[b], &snapshot.bodies[b]);
+    find_job(scene, path);
+    snapshot_clear(&snapshot);
+    return REPORT_FINISHED;
+}
+
+/* -------------------------------------------------------------------------------- either */
+
 static int read_file(struct scene *scene, const struct comm *comm, const char *path)
 {
     *scene = (struct scene){0};
@@ -74,11 +172,12 @@ int scene_read(struct scene *scene, const struct comm *comm, const char *path)
 {
     struct stat entry;
     if (stat(path, &entry) != 0) {
-        report_error("there is no %s; give a checkpoint or the folder of a run", path);
+        report_error("there is no %s; give a checkpoint, a snapshot or the folder of a run",
+                     path);
         return REPORT_BAD_INPUT;
     }
     if (!S_ISDIR(entry.st_mode))
-        return read_file(scene, comm, path);
+        return snapshot_is(path) ? read_snapshot(scene, path) : read_file(scene, comm, path);
     char *newest = scene_newest(path);
     int status = REPORT_BAD_INPUT;
     if (newest != NULL)
@@ -91,10 +190,9 @@ int scene_read(struct scene *scene, const struct comm *comm, const char *path)
 
 void scene_clear(struct scene *scene)
 {
-    if (scene->has_job) {
-        bodies_clear(&scene->bodies);
+    bodies_clear(&scene->bodies);
+    if (scene->has_job)
         job_clear(&scene->job);
-    }
     checkpoint_clear(&scene->checkpoint);
     spheres_clear(&scene->spheres);
     *scene = (struct scene){0};

@@ -1,4 +1,5 @@
-/* A checkpoint on one process, with the job it came from and the bodies where they were. */
+/* A checkpoint or a snapshot on one process, with the job it came from and the bodies where they
+ * were. */
 #ifndef TREMIE_POSTPROC_SCENE_H
 #define TREMIE_POSTPROC_SCENE_H
 
@@ -14,13 +15,14 @@ struct comm;
 struct scene {
     struct checkpoint checkpoint; /* its spheres are those below */
     struct spheres spheres;       /* fields only */
-    bool has_job;                 /* else the two below are empty */
+    bool has_job;                 /* else the one below is empty */
     struct job job;
-    struct bodies bodies;
+    struct bodies bodies; /* of a snapshot: name, material and triangles */
 };
 
 /*
- * Reads a checkpoint, or the newest one of a run's folder, verifying its checksums.  Returns a
+ * Reads a checkpoint, or the newest one of a run's folder, or a snapshot, verifying checksums.
+ * Of a snapshot, what it does not hold is 0, and the job is that of the run's folder.  Returns a
  * REPORT_ status, the reason said; then there is nothing to clear.  A job text that this
  * version cannot read is a warning.  Collective, meant for one rank.
  */

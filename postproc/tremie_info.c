@@ -1,5 +1,5 @@
 /*
- * tremie-info: what a checkpoint, a series file or a run's folder holds, and whether it is
+ * tremie-info: what a checkpoint, a snapshot, a series file or a run's folder holds, and whether it is
  * whole.
  *
  * A checkpoint is read completely, which verifies all its checksums; so are the checkpoints of
@@ -21,6 +21,7 @@
 #include "scene.h"
 #include "sheet.h"
 #include "store/file.h"
+#include "store/snapshot.h"
 
 static const double PI = 3.14159265358979323846;
 
@@ -132,6 +133,34 @@ static void print_scene(const struct scene *scene, bool listed)
                exact_sum_value(&checkpoint->monitors[k].sum));
 }
 
+static int show_snapshot(const char *path)
+{
+    struct snapshot snapshot;
+    char *why = snapshot_read(path, &snapshot);
+    if (why != NULL) {
+        report_error("cannot read the snapshot %s: %s; use another one", path, why);
+        free(why);
+        return REPORT_STORAGE;
+    }
+    printf("%s: a snapshot; all checksums are right\n", path);
+    printf("title               %s\n", snapshot.title);
+    printf("step                %" PRId64 " of %.6g s, so at %.9g s\n", snapshot.step,
+           snapshot.dt, (double)snapshot.step * snapshot.dt);
+    printf("spheres             %" PRId64 "\n", snapshot.spheres.n_total);
+    if (snapshot.has_contacts)
+        printf("contacts            %" PRId64 " between spheres\n", snapshot.contacts.n_total);
+    for (int b = 0; b < snapshot.n_bodies; b++) {
+        const struct snapshot_body *body = &snapshot.bodies[b];
+        printf("body %-14s %" PRId64 " triangles of %s", body->name, body->n_triangles,
+               body->material);
+        if (body->points_step != snapshot.step)
+            printf(", as at step %" PRId64, body->points_step);
+        printf("\n");
+    }
+    snapshot_clear(&snapshot);
+    return REPORT_FINISHED;
+}
+
 static int show_checkpoint(const struct comm *comm, const char *path, bool listed)
 {
     struct scene scene;
@@ -220,7 +249,8 @@ static int show_file(const struct comm *comm, const char *path, bool listed)
     struct content content;
     char *why = content_open(&content, path);
     if (why != NULL) {
-        report_error("%s; give a checkpoint, a series file or the folder of a run", why);
+        report_error("%s; give a checkpoint, a snapshot, a series file or the folder of a run",
+                     why);
         free(why);
         return REPORT_STORAGE;
     }
@@ -228,12 +258,15 @@ static int show_file(const struct comm *comm, const char *path, bool listed)
     int status = REPORT_FINISHED;
     if (strcmp(format, "tremie checkpoint") == 0) {
         status = show_checkpoint(comm, path, listed);
+    } else if (strcmp(format, "tremie snapshot") == 0) {
+        status = show_snapshot(path);
+        listed = true;
     } else if (strcmp(format, "tremie series") == 0) {
         printf("%s: a segment of a run's series\n", path);
         listed = true;
     } else {
         report_error(
-            "%s was not written by tremie; give a checkpoint, a series file or the folder of a run",
+            "%s was not written by tremie; give a checkpoint, a snapshot, a series file or the folder of a run",
             path);
         status = REPORT_STORAGE;
     }
@@ -324,7 +357,7 @@ int main(int argc, char **argv)
     const struct arguments_page page = {
         "tremie-info",
         "FILE|RUN [--list]",
-        "Shows what a checkpoint, a series file or the folder of a run holds: step, time, counts, extents,\n"
+        "Shows what a checkpoint, a snapshot, a series file or the folder of a run holds: step, time, counts, extents,\n"
         "masses, energies; and verifies the checksums.\n"
         "\n"
         "Exit status: 0 shown and whole; 2 bad arguments; 4 a file is damaged or cannot be read.\n",
@@ -338,8 +371,9 @@ int main(int argc, char **argv)
         return status;
     struct stat entry;
     if (stat(argv[1], &entry) != 0) {
-        report_error("there is no %s; give a checkpoint, a series file or the folder of a run",
-                     argv[1]);
+        report_error(
+            "there is no %s; give a checkpoint, a snapshot, a series file or the folder of a run",
+            argv[1]);
         return REPORT_BAD_INPUT;
     }
     MPI_Init(NULL, NULL);

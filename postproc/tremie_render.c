@@ -1,5 +1,5 @@
 /*
- * tremie-render: a picture of a checkpoint.
+ * tremie-render: a picture of a checkpoint or a snapshot.
  *
  * The spheres are shown as they are, coloured by what is asked for; bodies as panes of glass
  * with dark edges, those towards the viewer fainter so that they hide nothing.  The camera
@@ -467,8 +467,8 @@ int main(int argc, char **argv)
     };
     const struct arguments_page page = {
         "tremie-render",
-        "CHECKPOINT -o FILE.png [options]",
-        "Draws a checkpoint, or the newest one of a run's folder: spheres, bodies, and what the colours\n"
+        "CHECKPOINT|SNAPSHOT|RUN -o FILE.png [options]",
+        "Draws a checkpoint or a snapshot, or the newest checkpoint of a run's folder: spheres, bodies, and what the colours\n"
         "mean.  Ranks are those in whose subdomains the spheres lay when the run wrote the checkpoint,\n"
         "as the series in its folder tell.\n"
         "\n"

@@ -399,6 +399,18 @@ static void check_format(struct h5 *h5)
     free(format);
 }
 
+bool snapshot_is(const char *path)
+{
+    struct h5 h5;
+    h5_open(&h5, path);
+    char *format = h5_has(&h5, "/run") ? h5_get_text(&h5, "/run", "format") : NULL;
+    const bool is = format != NULL && strcmp(format, FORMAT) == 0;
+    h5_close(&h5);
+    free(h5.why);
+    free(format);
+    return is;
+}
+
 /* Those of the fields that are in the file. */
 static void find_columns(struct h5 *h5, struct table *table, const struct field *fields, int n)
 {

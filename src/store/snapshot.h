@@ -96,6 +96,8 @@ void snapshot_get(const struct table *table, int64_t i, int column, double *valu
  * said, the same on all ranks; then no file was touched.  Collective. */
 int snapshot_write(const struct comm *comm, const char *folder, struct snapshot *snapshot);
 
+/* Does the file say that it is one?  Local. */
+bool snapshot_is(const char *path);
 /* Reads a file, on one process: all but rows, points and triangles.  Returns NULL or the reason
  * (the caller frees it); then there is nothing to clear.  Local. */
 char *snapshot_measure(const char *path, struct snapshot *snapshot);
