@@ -34,7 +34,7 @@ static const struct colours_rgb GLASS = {0.42f, 0.50f, 0.60f};
 static const struct colours_rgb EDGE = {0.24f, 0.28f, 0.34f};
 
 struct wishes {
-    const char *path, *out, *size, *range;
+    const char *path, *like, *out, *size, *range;
     int by, view;
     double azimuth, elevation; /* [degrees]; not a number: the view's */
     double zoom;
@@ -73,7 +73,8 @@ static double value_of(const struct scene *scene, enum colour_by by, int i)
 }
 
 /* The value of each sphere, *values, which the caller frees.  Returns a REPORT_ status. */
-static int find_values(const struct scene *scene, const struct wishes *wishes, double **values)
+static int find_values(const struct scene *scene, const struct wishes *wishes, const char *path,
+                       double **values)
 {
     const int n = scene->spheres.n_owned;
     int status = REPORT_FINISHED;
@@ -83,7 +84,7 @@ static int find_values(const struct scene *scene, const struct wishes *wishes, d
     if (wishes->by != BY_RANK)
         return status;
     int *owner = array_allocate((size_t)n, sizeof *owner);
-    status = owners_find(owner, &scene->spheres, wishes->path, scene->checkpoint.step);
+    status = owners_find(owner, &scene->spheres, path, scene->checkpoint.step);
     for (int i = 0; i < n; i++)
         (*values)[i] = owner[i];
     free(owner);
@@ -344,13 +345,22 @@ static void draw_legend(struct canvas *canvas, const struct scene *scene,
     free(names);
 }
 
-static void draw(struct canvas *canvas, const struct scene *scene, const struct wishes *wishes,
-                 const double *values)
+/* What is drawn, and its colours. */
+struct subject {
+    struct scene scene;
+    double *values; /* of each sphere */
+};
+
+/* `like` gives the camera and the ends of the colour scale. */
+static void draw(struct canvas *canvas, const struct subject *subject,
+                 const struct subject *like, const struct wishes *wishes)
 {
+    const struct scene *scene = &subject->scene;
+    const double *values = subject->values;
     const int n = scene->spheres.n_owned;
     const double margin = 0.035 * canvas->height;
     const double height = canvas->height / 75.0 > 16.0 ? canvas->height / 75.0 : 16.0;
-    struct balls balls = gather_balls(scene, wishes->no_bodies);
+    struct balls balls = gather_balls(&like->scene, wishes->no_bodies);
     const struct camera camera =
         camera_fit(wishes->azimuth, wishes->elevation, wishes->zoom,
                    (struct camera_frame){margin, margin + 3.0 * height,
@@ -358,7 +368,7 @@ static void draw(struct canvas *canvas, const struct scene *scene, const struct 
                                          canvas->height - margin - 2.5 * height},
                    balls.n, balls.list);
     double range[2];
-    find_range(wishes, n, values, range);
+    find_range(wishes, like->scene.spheres.n_owned, like->values, range);
     draw_spheres(canvas, &camera, scene, wishes, values, range);
     if (!wishes->no_bodies)
         draw_bodies(canvas, &camera, &scene->bodies, camera_middle(balls.n, balls.list),
@@ -368,12 +378,14 @@ static void draw(struct canvas *canvas, const struct scene *scene, const struct 
     free(balls.list);
 }
 
-static int render(const struct scene *scene, const struct wishes *wishes, const double *values)
+static int render(const struct subject *subject, const struct subject *like,
+                  const struct wishes *wishes)
 {
+    const struct scene *scene = &subject->scene;
     struct canvas canvas;
     struct image image;
     canvas_init(&canvas, wishes->width, wishes->height);
-    draw(&canvas, scene, wishes, values);
+    draw(&canvas, subject, like, wishes);
     canvas_develop(&canvas, &image);
     canvas_clear(&canvas);
     const int status = image_write_png(&image, wishes->out);
@@ -422,19 +434,50 @@ static bool settle(struct wishes *wishes)
     return false;
 }
 
+/* Reads a file and what its spheres show.  Returns a REPORT_ status; there is nothing to clear
+ * after a failure. */
+static int subject_read(struct subject *subject, const struct comm *comm, const char *path,
+                        const struct wishes *wishes)
+{
+    int status = scene_read(&subject->scene, comm, path);
+    if (status != REPORT_FINISHED)
+        return status;
+    status = find_values(&subject->scene, wishes, path, &subject->values);
+    if (status != REPORT_FINISHED) {
+        free(subject->values);
+        scene_clear(&subject->scene);
+    }
+    return status;
+}
+
+static void subject_clear(struct subject *subject)
+{
+    free(subject->values);
+    scene_clear(&subject->scene);
+}
+
+static int show_like(const struct comm *comm, const struct subject *subject,
+                     const struct wishes *wishes)
+{
+    struct subject like;
+    int status = subject_read(&like, comm, wishes->like, wishes);
+    if (status == REPORT_FINISHED) {
+        status = render(subject, &like, wishes);
+        subject_clear(&like);
+    }
+    return status;
+}
+
 static int show(struct wishes *wishes)
 {
     MPI_Init(NULL, NULL);
     const struct comm comm = comm_world();
-    struct scene scene;
-    int status = scene_read(&scene, &comm, wishes->path);
+    struct subject subject;
+    int status = subject_read(&subject, &comm, wishes->path, wishes);
     if (status == REPORT_FINISHED) {
-        double *values;
-        status = find_values(&scene, wishes, &values);
-        if (status == REPORT_FINISHED)
-            status = render(&scene, wishes, values);
-        free(values);
-        scene_clear(&scene);
+        status = wishes->like != NULL ? show_like(&comm, &subject, wishes)
+                                      : render(&subject, &subject, wishes);
+        subject_clear(&subject);
     }
     MPI_Finalize();
     return status;
@@ -455,6 +498,8 @@ int main(int argc, char **argv)
         {"color", 0, ARGUMENTS_CHOICE, &wishes.by, "BY", "what colours show", colours},
         {"range", 0, ARGUMENTS_TEXT, &wishes.range, "LEAST:MOST", "ends of the colour scale",
          NULL},
+        {"like", 0, ARGUMENTS_TEXT, &wishes.like, "FILE",
+         "camera and colour scale as in a picture of FILE, for series of pictures", NULL},
         {"view", 0, ARGUMENTS_CHOICE, &wishes.view, "SIDE", "where to look from", views},
         {"azimuth", 0, ARGUMENTS_NUMBER, &wishes.azimuth, "DEG",
          "the same freely: from the front to the right", NULL},

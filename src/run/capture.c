@@ -135,10 +135,22 @@ static void add_contacts(const struct simulation *sim, struct table *table)
 
 /* ---------------------------------------------------------------------------------- bodies */
 
+/* Adds a facet as triangles. */
+static void add_facet(struct snapshot_body *shown, int n, const int *vertices)
+{
+    for (int k = 2; k < n; k++) {
+        int32_t *triangle = shown->triangles[shown->n_triangles++];
+        triangle[0] = vertices[0];
+        triangle[1] = vertices[k - 1];
+        triangle[2] = vertices[k];
+    }
+}
+
 static void add_body(const struct simulation *sim, const struct body *body,
                      struct snapshot_body *shown)
 {
     const struct mesh *mesh = &body->mesh;
+    const size_t n_facets = (size_t)(mesh->n_faces + mesh->n_skin);
     *shown = (struct snapshot_body){
         .name = array_string(body->name),
         .material = array_string(sim->job->materials[body->material].name),
@@ -149,26 +161,21 @@ static void add_body(const struct simulation *sim, const struct body *body,
         const struct vec3 x = mesh->place[v];
         memcpy(shown->points[v], (double[3]){x.x, x.y, x.z}, sizeof *shown->points);
     }
-    shown->triangles = array_allocate(2 * (size_t)mesh->n_faces, sizeof *shown->triangles);
-    for (int f = 0; f < mesh->n_faces; f++) {
-        const struct mesh_face *face = &mesh->faces[f];
-        for (int k = 2; k < face->n; k++) {
-            int32_t *triangle = shown->triangles[shown->n_triangles++];
-            triangle[0] = face->vertices[0];
-            triangle[1] = face->vertices[k - 1];
-            triangle[2] = face->vertices[k];
-        }
-    }
+    shown->triangles = array_allocate(2 * n_facets, sizeof *shown->triangles);
+    for (int f = 0; f < mesh->n_faces; f++)
+        add_facet(shown, mesh->faces[f].n, mesh->faces[f].vertices);
+    for (int f = 0; f < mesh->n_skin; f++)
+        add_facet(shown, mesh->skin[f][3] < 0 ? 3 : 4, mesh->skin[f]);
 }
 
 static void add_bodies(const struct simulation *sim, struct snapshot *snapshot)
 {
     if (sim->comm->rank != 0)
         return;
-    snapshot->n_bodies = sim->bodies.n;
     snapshot->bodies = array_allocate((size_t)sim->bodies.n, sizeof *snapshot->bodies);
     for (int b = 0; b < sim->bodies.n; b++)
-        add_body(sim, &sim->bodies.list[b], &snapshot->bodies[b]);
+        if (sim->bodies.list[b].exists)
+            add_body(sim, &sim->bodies.list[b], &snapshot->bodies[snapshot->n_bodies++]);
 }
 
 /* ----------------------------------------------------------------------------------- whole */

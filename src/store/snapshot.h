@@ -10,7 +10,7 @@
  *                    material and group have the names of their values, one a line, as
  *                    attribute `names`
  *   /contacts/       first_id < second_id (sorted), position, force: where asked for
- *   /bodies/NAME/    points (n x 3), triangles (n x 3, counted from 0); attributes: material,
+ *   /bodies/NAME/    of bodies that are there: points (n x 3), triangles (n x 3, counted from 0); attributes: material,
  *                    points_step, triangles_step
  *   /checksums/      of spheres and contacts, as in checkpoints; points and triangles have
  *                    theirs as attribute `checksum`

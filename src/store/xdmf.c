@@ -147,7 +147,8 @@ void xdmf_add(struct xdmf *xdmf, const struct snapshot *snapshot)
           "snapshot %" PRId64 " comes after later ones", snapshot->step);
     ARRAY_GROW(xdmf->entries, xdmf->n + 1, xdmf->capacity);
     struct xdmf_entry *entry = &xdmf->entries[xdmf->n++];
-    *entry = (struct xdmf_entry){.step = snapshot->step};
+    *entry = (struct xdmf_entry){.step = snapshot->step,
+                                 .time = (double)snapshot->step * snapshot->dt};
     add_grid(entry, snapshot, XDMF_SPHERES, -1);
     for (int b = 0; b < snapshot->n_bodies; b++)
         add_grid(entry, snapshot, XDMF_BODIES, b);
@@ -191,17 +192,22 @@ static const struct xdmf_grid *find_grid(const struct xdmf_entry *entry, const c
     return NULL;
 }
 
-/* All times of one thing, from the entry on that has it first. */
+/* All times of one thing, which the entry `first` has; nothing where it is not there, for readers
+ * would show what was there before. */
 static void put_history(FILE *out, const struct xdmf *xdmf, int first, int place)
 {
     const struct xdmf_grid *sample = &xdmf->entries[first].grids[place];
     fprintf(out, "<Grid Name=\"%s\" GridType=\"Collection\" CollectionType=\"Temporal\">\n",
             sample->name);
-    for (int i = first; i < xdmf->n; i++) {
+    for (int i = 0; i < xdmf->n; i++) {
         const struct xdmf_grid *grid =
             find_grid(&xdmf->entries[i], sample->name, sample->kind, place);
-        if (grid != NULL)
+        if (grid != NULL) {
             fputs(grid->text, out);
+        } else {
+            put_head(out, sample->name, xdmf->entries[i].time);
+            put_nothing(out);
+        }
     }
     fputs("</Grid>\n", out);
 }

@@ -24,6 +24,7 @@ struct xdmf_grid {
 
 struct xdmf_entry {
     int64_t step;
+    double time; /* [s] */
     int n, capacity;
     struct xdmf_grid *grids;
 };
