@@ -1,6 +1,6 @@
 /*
- * tremie-info: what a checkpoint, a snapshot, a series file or a run's folder holds, and whether it is
- * whole.
+ * tremie-info: what a checkpoint, a snapshot, a series file or a run's folder holds, and
+ * whether it is whole.
  *
  * A checkpoint is read completely, which verifies all its checksums; so are the checkpoints of
  * a run.  Series carry the checksums of HDF5, which reading verifies as well.
@@ -357,8 +357,8 @@ int main(int argc, char **argv)
     const struct arguments_page page = {
         "tremie-info",
         "FILE|RUN [--list]",
-        "Shows what a checkpoint, a snapshot, a series file or the folder of a run holds: step, time, counts, extents,\n"
-        "masses, energies; and verifies the checksums.\n"
+        "Shows what a checkpoint, a snapshot, a series file or the folder of a run holds: step,\n"
+        "time, counts, extents, masses, energies; and verifies the checksums.\n"
         "\n"
         "Exit status: 0 shown and whole; 2 bad arguments; 4 a file is damaged or cannot be read.\n",
         sizeof entries / sizeof *entries,

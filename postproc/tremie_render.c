@@ -513,9 +513,9 @@ int main(int argc, char **argv)
     const struct arguments_page page = {
         "tremie-render",
         "CHECKPOINT|SNAPSHOT|RUN -o FILE.png [options]",
-        "Draws a checkpoint or a snapshot, or the newest checkpoint of a run's folder: spheres, bodies, and what the colours\n"
-        "mean.  Ranks are those in whose subdomains the spheres lay when the run wrote the checkpoint,\n"
-        "as the series in its folder tell.\n"
+        "Draws a checkpoint or a snapshot, or the newest checkpoint of a run's folder: spheres,\n"
+        "bodies, and what the colours mean.  Ranks are those in whose subdomains the spheres lay\n"
+        "when the run wrote the checkpoint, as the series in its folder tell.\n"
         "\n"
         "Exit status: 0 drawn; 2 bad arguments; 4 a file cannot be read or written.\n",
         sizeof entries / sizeof *entries,

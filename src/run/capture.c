@@ -208,6 +208,8 @@ void capture_take(struct simulation *sim)
         snapshot->materials = add_line(snapshot->materials, job->materials[m].name);
     for (int g = 0; g < job->n_spheres; g++)
         snapshot->groups = add_line(snapshot->groups, job->spheres[g].name);
+    for (int i = 0; i < job->n_insertions; i++)
+        snapshot->groups = add_line(snapshot->groups, job->insertions[i].name);
     add_spheres(sim, &snapshot->spheres);
     table_arrange(&snapshot->spheres, sim->comm, sim->next_id);
     if (snapshot->has_contacts) {

@@ -441,7 +441,7 @@ static int add_content_values(struct simulation *sim, double *row, int n)
     double v[3], w[3];
     contents_begin(&sim->contents);
     for (int i = 0; sim->contents.n > 0 && i < sim->spheres.n_owned; i++) {
-        centred_motion(sim, i, v, w);
+        observe_motion(sim, i, v, w);
         contents_add(&sim->contents, &sim->spheres, i, v);
     }
     return contents_values(&sim->contents, sim->comm, row, n);

@@ -77,8 +77,8 @@ int64_t h5_count_rows(struct h5 *h5, const char *path, const struct field *field
  * a failure. */
 int64_t h5_find_rows(struct h5 *h5, const char *path, struct field *field);
 
-/* A piece of n of the n_total rows as it stands in a file, `size` bytes; the caller frees it.  A
- * piece is the H5_PIECE_ROWS rows from a multiple of as many on, or those that are left. */
+/* A piece of n of the n_total rows as it stands in a file, `size` bytes; the caller frees it.
+ * A piece is the H5_PIECE_ROWS rows from a multiple of as many on, or those that are left. */
 unsigned char *h5_pack(const struct field *field, int64_t n_total, int64_t n, const void *rows,
                        size_t *size);
 /* Puts the piece that begins with row `begin` into rows that were declared packed. */

@@ -10,8 +10,8 @@
  *                    material and group have the names of their values, one a line, as
  *                    attribute `names`
  *   /contacts/       first_id < second_id (sorted), position, force: where asked for
- *   /bodies/NAME/    of bodies that are there: points (n x 3), triangles (n x 3, counted from 0); attributes: material,
- *                    points_step, triangles_step
+ *   /bodies/NAME/    of bodies that are there: points (n x 3), triangles (n x 3, counted from
+ *                    0); attributes: material, points_step, triangles_step
  *   /checksums/      of spheres and contacts, as in checkpoints; points and triangles have
  *                    theirs as attribute `checksum`
  * Numbers are doubles or, as asked for, rounded to 32 bits (not those of bodies).  Points or

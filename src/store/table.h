@@ -55,8 +55,8 @@ void table_arrange(struct table *table, const struct comm *comm, int64_t n_ids);
 int64_t table_file_size(const struct table *table);
 /* Lays out all n_total rows: one process.  Local. */
 void table_declare(const struct table *table, struct h5 *h5);
-/* Puts the rows of a packed table into the new file that rank 0 lays out; the others' `h5` is not
- * used.  Collective. */
+/* Puts the rows of a packed table into the new file that rank 0 lays out; the others' `h5` is
+ * not used.  Collective. */
 void table_pack(const struct table *table, const struct comm *comm, struct h5 *h5);
 /* Writes this rank's slice, unless packed, and its checksums.  Local. */
 void table_write(const struct table *table, struct h5 *h5);

@@ -192,8 +192,8 @@ static const struct xdmf_grid *find_grid(const struct xdmf_entry *entry, const c
     return NULL;
 }
 
-/* All times of one thing, which the entry `first` has; nothing where it is not there, for readers
- * would show what was there before. */
+/* All times of one thing, which the entry `first` has; nothing where it is not there, for
+ * readers would show what was there before. */
 static void put_history(FILE *out, const struct xdmf *xdmf, int first, int place)
 {
     const struct xdmf_grid *sample = &xdmf->entries[first].grids[place];

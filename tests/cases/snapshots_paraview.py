@@ -95,7 +95,7 @@ def check_contacts(run):
 def main():
     plain, packed = sys.argv[1:]
     check_spheres(plain, "plain", 1e-15)
-    check_spheres(packed, "packed", 1e-8)
+    check_spheres(packed, "packed", 1e-7)
     check_bodies(plain)
     check_contacts(plain)
 
