@@ -22,8 +22,8 @@ struct scene {
 
 /*
  * Reads a checkpoint, or the newest one of a run's folder, or a snapshot, verifying checksums.
- * Of a snapshot, what it does not hold is 0, and the job is that of the run's folder.
- * Returns a REPORT_ status, the reason said; then there is nothing to clear.  A job text that this
+ * Of a snapshot, what it does not hold is 0, and the job is that of the run's folder.  Returns
+ * a REPORT_ status, the reason said; then there is nothing to clear.  A job text that this
  * version cannot read is a warning.  Collective, meant for one rank.
  */
 int scene_read(struct scene *scene, const struct comm *comm, const char *path);
