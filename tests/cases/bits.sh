@@ -91,6 +91,15 @@ like periodic 3 "periodic on 3 ranks, both levels at odd moments" periodic $(bot
 like periodic 8 "periodic, 4x1x2 grid, search every 7 steps" periodic $(every 7) \
     --set decomposition.grid=[4,1,2]
 rm -rf periodic
+# ------------------------------------------------------------------ what comes and goes
+reference feed feed
+for ranks in 2 3 8; do
+    like feed $ranks "feed on $ranks ranks" feed
+done
+like feed 1 "feed, search every step, all pairs" feed $(every 1) $all_pairs
+like feed 3 "feed on 3 ranks, both levels at odd moments" feed $(both_levels 13 11)
+like feed 4 "feed, 2x2x1 grid" feed --set decomposition.grid=[2,2,1]
+rm -rf feed
 
 # ------------------------------------------------------------------ physics and kernels
 # variants NAME SCENE OPTIONS...: another physics on one rank, three and five.

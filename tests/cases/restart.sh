@@ -123,6 +123,7 @@ relay()
 relay heap heap
 relay mixed mixed
 relay periodic periodic
+relay feed feed
 [ -z "$thorough" ] || relay "heap with friction 10" heap --set contact.pairs.0.friction=10
 relay "mixed with friction 10, no ledger" mixed --set contact.pairs.0.friction=10 \
     --set contact.ledger=false
