@@ -729,8 +729,8 @@ static void insertion_materials(const struct check *check, int i, bool *falling)
     char path[64];
     PATH("insert.%d", i);
     if (insertion->has_material == (insertion->n_mix > 0))
-        mistake(check, path, "says %s; a material or a mix is expected",
-                insertion->has_material ? "a material and a mix" : "of no material");
+        mistake(check, path, "names %s; a material or a mix is expected",
+                insertion->has_material ? "a material and a mix" : "no material");
     else if (insertion->has_material && is_material(check, insertion->material))
         falling[insertion->material] = true;
     for (int k = 0; k < insertion->n_mix; k++)
