@@ -8,7 +8,7 @@
  * drawn by the number of the attempt.  Every rank draws the same, tests against the spheres
  * that it owns and its share of the bodies, one reduction gives the verdict on up to
  * INSERTION_WAITING attempts, and they are accepted in order, tested against each other.  So
- * what comes in, and its ids, is a function of the job alone.  (THEORY.md, section 8)
+ * what comes in, and its ids, is a function of the job alone.  (8.1)
  */
 #ifndef TREMIE_RUN_INSERTION_H
 #define TREMIE_RUN_INSERTION_H

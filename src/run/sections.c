@@ -60,7 +60,7 @@ static bool is_between(double d, double period)
 }
 
 /* Where the centre, which is `past` beyond the plane along the normal, went through it, seen
- * from the plane's point; its step ended with velocity v. [m] */
+ * from the plane's point; its step ended with velocity v. [m]              (8.2) */
 static struct vec3 passage(const struct job_section *section, const struct spheres *spheres,
                            int i, double past)
 {

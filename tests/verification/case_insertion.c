@@ -1,6 +1,6 @@
 /*
  * What comes in: places, sizes, materials and velocities as asked for, also where the region is
- * full; the rate; the ledger of energy with spheres that come and go (THEORY.md, section 8.3).
+ * full; the rate; the ledger of energy with spheres that come and go (THEORY.md, section 8.1).
  *
  * Distributions are compared by Kolmogorov's statistic, the largest distance between shares
  * counted and expected, times the square root of the number: with the right distribution it
@@ -210,7 +210,7 @@ static void content(void)
 
 int main(int argc, char **argv)
 {
-    verify_begin(argc, argv, "What comes in, and contents of regions", "(8.3), (8.4)");
+    verify_begin(argc, argv, "What comes in, and contents of regions", "(8.1), (7.1)");
     thin();
     full();
     rates();
