@@ -152,6 +152,8 @@ bool facet_contacts_meet(const struct facet_contacts *facets, const struct bodie
     struct facet_work *work = facets->work;
     struct contact_geometry at;
     for (int b = 0; b < bodies->n; b++) {
+        if (!bodies->list[b].exists)
+            continue;
         const struct mesh *mesh = &bodies->list[b].mesh;
         facet_tree_query(&work->trees[b], mesh, centre, radius, &work->found);
         for (int k = 0; k < work->found.n; k++)
