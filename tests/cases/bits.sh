@@ -101,6 +101,14 @@ like feed 3 "feed on 3 ranks, both levels at odd moments" feed $(both_levels 13 
 like feed 4 "feed, 2x2x1 grid" feed --set decomposition.grid=[2,2,1]
 rm -rf feed
 
+# ------------------------------------------------------------------ bodies that move in every way
+reference machines machines
+like machines 2 "machines on 2 ranks, search every 7 steps" machines $(every 7)
+like machines 3 "machines on 3 ranks" machines
+like machines 8 "machines on 8 ranks, both levels at odd moments" machines $(both_levels 13 11)
+like machines 1 "machines, all pairs" machines $all_pairs
+rm -rf machines
+
 # ------------------------------------------------------------------ physics and kernels
 # variants NAME SCENE OPTIONS...: another physics on one rank, three and five.
 variants()

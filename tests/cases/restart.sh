@@ -122,6 +122,7 @@ relay()
 
 relay heap heap
 relay mixed mixed
+relay machines machines
 relay periodic periodic
 relay feed feed
 [ -z "$thorough" ] || relay "heap with friction 10" heap --set contact.pairs.0.friction=10
