@@ -514,9 +514,9 @@ static char *difference_report(const char *path, const struct yaml_tree_node *wa
 /* Files are the same when their names are: a folder may have been moved. */
 static bool scalars_equal(const char *key, const char *was, const char *now)
 {
-    if (key != NULL && strcmp(key, "file") == 0) {
+    if (key != NULL && (strcmp(key, "file") == 0 || strcmp(key, "from") == 0)) {
         const char *p = strrchr(was, '/'), *q = strrchr(now, '/');
-        return strcmp(p != NULL ? p : was, q != NULL ? q : now) == 0;
+        return strcmp(p != NULL ? p + 1 : was, q != NULL ? q + 1 : now) == 0;
     }
     return strcmp(was, now) == 0;
 }

@@ -120,6 +120,8 @@ struct job_spheres {
     int64_t sum; /* checksum of that file */
 };
 
+enum job_velocities { JOB_VELOCITIES_KEEP, JOB_VELOCITIES_ZERO };
+
 enum job_geometry {
     JOB_GEOMETRY_PLANE,
     JOB_GEOMETRY_BOX,
@@ -348,6 +350,12 @@ struct job {
         double step;   /* [s]; 0 means auto */
         double safety; /* step: auto takes this share of the critical step */
     } time;
+    struct {
+        bool given;
+        char *from; /* folder of a run, or a checkpoint */
+        enum job_velocities velocities;
+        bool recalled; /* not a key: the run that is resumed has it already */
+    } start;
     int64_t seed;        /* of all random numbers */
     struct vec3 gravity; /* [m/s2]; at the start where it turns, none where there is a table */
     struct {

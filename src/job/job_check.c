@@ -931,8 +931,8 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     names_check(&check, "remove", job->n_removals, job->removals, sizeof *job->removals);
     spheres_check(&check, read_files, falling);
     bodies_check(&check, read_files, standing);
-    if (job->n_spheres == 0 && job->n_insertions == 0 && is_clean(&check, "spheres") &&
-        is_clean(&check, "insert"))
+    if (job->n_spheres == 0 && job->n_insertions == 0 && !job->start.given &&
+        is_clean(&check, "spheres") && is_clean(&check, "insert"))
         mistake(&check, "spheres", "are missing; a group of spheres, or `insert`, is expected");
     insertions_check(&check, falling);
     removals_check(&check);
@@ -950,7 +950,7 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     pairs_check(&check, falling, standing);
     laws_check(&check);
     for (int m = 0; m < job->n_materials; m++)
-        used[m] = used[m] || falling[m] || standing[m];
+        used[m] = used[m] || falling[m] || standing[m] || job->start.given;
     free(falling);
     free(standing);
 }

@@ -75,6 +75,17 @@ static const char *const compressions[] = {"none", "lossless", NULL};
 static const char *const precisions[] = {"double", "single", NULL};
 static const char *const searches[] = {"auto", "all-pairs", NULL};
 
+static const char *const velocities[] = {"keep", "zero", NULL};
+
+static const struct schema_key start_keys[] = {
+    {"from", SCHEMA_FILE,
+     "folder of another job's run, for its newest checkpoint, or a checkpoint; materials are "
+     "matched by name, ids go on; not needed any more once the run has a checkpoint",
+     .required = true, AT(struct job, start.from)},
+    {"velocities", SCHEMA_CHOICE, "keep velocities and spins, or set them to zero",
+     .standard = "keep", .choices = velocities, AT(struct job, start.velocities)},
+    END};
+
 static const struct schema_key time_keys[] = {
     {"end", SCHEMA_NUMBER, "simulated time at which the run ends; a whole number of steps",
      .unit = "s", .required = true, ABOVE_TO(0.0, 1e9), AT(struct job, time.end)},
@@ -821,6 +832,10 @@ const struct schema_key job_keys[] = {
          "then what a later library says"},
     {"time", SCHEMA_GROUP, "how long and in which steps", .required = true,
      .inside = time_keys},
+    {"start", SCHEMA_GROUP,
+     "spheres that another job has left, with what their contacts remember (of those with "
+     "bodies: with such as are the same and at rest in both jobs); time begins at 0",
+     .inside = start_keys, GIVEN(struct job, start.given)},
     {"seed", SCHEMA_COUNT,
      "seed of all random numbers: another one gives another scene that is as likely",
      .standard = "1", BETWEEN(0.0, 1e15), AT(struct job, seed)},

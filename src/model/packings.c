@@ -214,10 +214,11 @@ static double greatest_radius(const struct packing *packing)
 
 /* Surfaces of the bodies that some group keeps clear of. */
 static void builder_init(struct builder *builder, const struct packings *packings,
-                         const struct job *job, const struct bodies *bodies)
+                         const struct job *job, const struct bodies *bodies,
+                         const struct packing *before)
 {
     const size_t n = (size_t)bodies->n;
-    double radius = 0.0;
+    double radius = greatest_radius(before);
     bool avoid = false;
     *builder = (struct builder){
         .job = job, .bodies = bodies, .surfaces = array_allocate(n, sizeof(void *))};
@@ -239,9 +240,18 @@ static void builder_clear(struct builder *builder)
     crowd_clear(&builder->crowd);
 }
 
+static void add_group(struct builder *builder, const struct packing *packing)
+{
+    for (int64_t k = 0; k < packing->n; k++) {
+        const struct packing_sphere sphere = packing_get(packing, k);
+        crowd_add(&builder->crowd, sphere.position, sphere.radius);
+    }
+}
+
 /* Places the random groups, each among those before it. */
 static bool place_groups(struct packings *packings, const struct job *job,
-                         const struct bodies *bodies, struct mistakes *mistakes)
+                         const struct bodies *bodies, const struct packing *before,
+                         struct mistakes *mistakes)
 {
     struct builder builder;
     int last = -1;
@@ -250,15 +260,14 @@ static bool place_groups(struct packings *packings, const struct job *job,
         last = is_random(&packings->groups[g]) ? g : last;
     if (last < 0)
         return true;
-    builder_init(&builder, packings, job, bodies);
+    builder_init(&builder, packings, job, bodies, before);
+    add_group(&builder, before);
     for (int g = 0; g <= last; g++) {
         struct packing *packing = &packings->groups[g];
         if (is_random(packing))
             fine = fill(&builder, packing, mistakes) && fine;
-        for (int64_t k = 0; !is_random(packing) && k < packing->n; k++) {
-            const struct packing_sphere sphere = packing_get(packing, k);
-            crowd_add(&builder.crowd, sphere.position, sphere.radius);
-        }
+        else
+            add_group(&builder, packing);
     }
     builder_clear(&builder);
     return fine;
@@ -275,8 +284,8 @@ static char *read_file(struct packing *packing, packings_reader *reader)
 }
 
 bool packings_open(struct packings *packings, const struct job *job,
-                   const struct bodies *bodies, packings_reader *reader,
-                   struct mistakes *mistakes)
+                   const struct bodies *bodies, const struct packing *before,
+                   packings_reader *reader, struct mistakes *mistakes)
 {
     bool fine = true;
     *packings = (struct packings){.n = job->n_spheres};
@@ -291,7 +300,7 @@ bool packings_open(struct packings *packings, const struct job *job,
         fine = fine && why == NULL;
         free(why);
     }
-    fine = fine && place_groups(packings, job, bodies, mistakes);
+    fine = fine && place_groups(packings, job, bodies, before, mistakes);
     if (!fine)
         packings_close(packings);
     return fine;

@@ -15,6 +15,7 @@
 #include "model/packings.h"
 #include "model/region.h"
 #include "model/rigid.h"
+#include "run/chain.h"
 #include "run/inflow.h"
 #include "run/limits.h"
 #include "run/simulation.h"
@@ -127,18 +128,9 @@ static void add_limits(struct limits *limits, const struct job *job,
     }
 }
 
-static void choose_times(struct job *job, const struct packings *packings, double speed)
+/* Ends and intervals that are whole numbers of steps. */
+static void round_times(struct job *job)
 {
-    struct limits limits = limits_nothing(speed);
-    struct materials materials;
-    materials_build(&materials, job);
-    for (int g = 0; g < job->n_spheres; g++)
-        add_limits(&limits, job, &materials, &packings->groups[g]);
-    for (int k = 0; k < job->n_insertions; k++)
-        inflow_add_limits(&limits, job, &materials, k);
-    materials_clear(&materials);
-    if (limits.rayleigh < 1e299)
-        job->time.step = limits_step(&limits, job->time.safety);
     const double n_steps = (double)simulation_steps(job->time.end, job->time.step);
     job->time.end = (n_steps > 1.0 ? n_steps : 1.0) * job->time.step;
     double *const periods[] = {&job->output.series_every, &job->output.snapshots.every};
@@ -147,6 +139,23 @@ static void choose_times(struct job *job, const struct packings *packings, doubl
         if (*periods[k] > 0.0)
             *periods[k] = (n > 1.0 ? n : 1.0) * job->time.step;
     }
+}
+
+static void choose_times(struct job *job, const struct packings *packings,
+                         const struct packing *before, double speed)
+{
+    struct limits limits = limits_nothing(speed);
+    struct materials materials;
+    materials_build(&materials, job);
+    for (int g = 0; g < job->n_spheres; g++)
+        add_limits(&limits, job, &materials, &packings->groups[g]);
+    add_limits(&limits, job, &materials, before);
+    for (int k = 0; k < job->n_insertions; k++)
+        inflow_add_limits(&limits, job, &materials, k);
+    materials_clear(&materials);
+    if (limits.rayleigh < 1e299)
+        job->time.step = limits_step(&limits, job->time.safety);
+    round_times(job);
 }
 
 /* A surface says "file:line:column: what"; the place goes where places go. */
@@ -226,6 +235,29 @@ static void add_period_mistakes(struct mistakes *mistakes, const struct job *job
                          sizes[k], "xyz"[k], DIAMETERS, DIAMETERS * 2.0 * radius);
 }
 
+void check_recall(struct job *job, const struct job *used)
+{
+    if (!job->start.given || !used->start.given)
+        return;
+    job->start.recalled = true;
+    if (!job->domain.given) {
+        job->domain.given = true;
+        job->domain.min = used->domain.min;
+        job->domain.max = used->domain.max;
+    }
+    if (job->time.step == 0.0) {
+        job->time.step = used->time.step;
+        round_times(job);
+    }
+}
+
+/* Opens what the job starts from, unless that was done when the run began. */
+static void open_start(const struct job *job, struct chain *before, struct mistakes *mistakes)
+{
+    if (job->start.given && !job->start.recalled)
+        chain_open(before, job, mistakes);
+}
+
 bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
 {
     struct extent scene = extent_nothing();
@@ -235,20 +267,24 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
     double largest = 0.0; /* radius [m] */
     struct packings packings = {0, NULL};
     struct bodies bodies = {.n = 0};
+    struct chain before = {.path = NULL};
     read_surfaces(job, mistakes);
     if (mistakes->n == 0) {
         bodies_build(&bodies, job);
-        packings_open(&packings, job, &bodies, sphere_file_read, mistakes);
+        open_start(job, &before, mistakes);
+        packings_open(&packings, job, &bodies, &before.packing, sphere_file_read, mistakes);
     }
-    for (int g = 0; g < packings.n; g++) {
-        const struct packing *packing = &packings.groups[g];
+    for (int g = -1; g < packings.n; g++) {
+        const struct packing *packing = g < 0 ? &before.packing : &packings.groups[g];
         const struct group_summary summary = summarise(job, packing);
+        if (packing->n == 0)
+            continue;
         extent_add(&scene, summary.extent.low, 0.0);
         extent_add(&scene, summary.extent.high, 0.0);
         n_spheres += packing->n;
         speed = summary.speed > speed ? summary.speed : speed;
         largest = summary.radius_most > largest ? summary.radius_most : largest;
-        if (job->spheres[g].file != NULL)
+        if (g >= 0 && job->spheres[g].file != NULL)
             job->spheres[g].sum = checksum(job->spheres[g].file);
     }
     if (n_spheres > INT64_C(2000000000))
@@ -276,9 +312,10 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
             speed = incoming > speed ? incoming : speed;
         }
         if (job->time.step == 0.0)
-            choose_times(job, &packings, foresee_speed(job, &bodies, speed));
+            choose_times(job, &packings, &before.packing, foresee_speed(job, &bodies, speed));
     }
     packings_close(&packings);
+    chain_close(&before);
     bodies_clear(&bodies);
     return mistakes->n == 0;
 }
@@ -348,27 +385,25 @@ static void print_limits(const struct job *job, const struct limits *limits)
                limits_scatter(limits->shortest.duration / step));
 }
 
-static void print_group(const struct job *job, const struct packing *packing,
+static void print_group(const struct job *job, const char *name, const struct packing *packing,
                         const struct group_summary *s, const struct materials *materials,
                         double speed)
 {
-    const struct job_spheres *group = packing->group;
     struct limits limits = limits_nothing(speed);
-    report_say("spheres   %s: %lld of %s, radius %.4g .. %.4g m, mass %.4g kg", group->name,
+    report_say("spheres   %s: %lld of %s, radius %.4g .. %.4g m, mass %.4g kg", name,
                (long long)s->n,
                s->material >= 0 ? job->materials[s->material].name : "several materials",
                s->radius_least, s->radius_most, s->mass);
     print_extent("         ", &s->extent);
     add_limits(&limits, job, materials, packing);
     print_limits(job, &limits);
-    warn_of_limits(job, group->name, &limits);
+    warn_of_limits(job, name, &limits);
     if (speed * job->time.step > job->watch.motion * s->radius_least)
         report_warn("at %.3g m/s spheres of '%s' or bodies move %.2g of the least radius in a "
                     "step, more than watch.motion = %.2g",
-                    speed, group->name, speed * job->time.step / s->radius_least,
-                    job->watch.motion);
+                    speed, name, speed * job->time.step / s->radius_least, job->watch.motion);
     if (!is_inside(&s->centres, job))
-        report_warn("spheres of '%s' begin outside the domain", group->name);
+        report_warn("spheres of '%s' begin outside the domain", name);
 }
 
 /* All groups; returns how many spheres there are. */
@@ -403,12 +438,21 @@ static int64_t print_groups(const struct job *job, const struct bodies *bodies,
     struct materials materials;
     struct packings packings;
     struct mistakes mistakes;
+    struct chain before = {.path = NULL};
     double speed = 0.0;
     int64_t n = 0;
     mistakes_init(&mistakes);
-    CHECK(packings_open(&packings, job, bodies, sphere_file_read, &mistakes),
+    open_start(job, &before, &mistakes);
+    CHECK(packings_open(&packings, job, bodies, &before.packing, sphere_file_read, &mistakes),
           "a packing was there and has gone: %s", mistakes.list[0].text);
     mistakes_clear(&mistakes);
+    const struct group_summary already = summarise(job, &before.packing);
+    if (already.n > 0) {
+        speed = already.speed;
+        extent_add(scene, already.extent.low, 0.0);
+        extent_add(scene, already.extent.high, 0.0);
+        n += already.n;
+    }
     for (int g = 0; g < job->n_spheres; g++) {
         groups[g] = summarise(job, &packings.groups[g]);
         speed = groups[g].speed > speed ? groups[g].speed : speed;
@@ -424,12 +468,16 @@ static int64_t print_groups(const struct job *job, const struct bodies *bodies,
     }
     materials_build(&materials, job);
     speed = foresee_speed(job, bodies, speed);
+    if (already.n > 0)
+        print_group(job, "start", &before.packing, &already, &materials, speed);
     for (int g = 0; g < job->n_spheres; g++)
-        print_group(job, &packings.groups[g], &groups[g], &materials, speed);
+        print_group(job, job->spheres[g].name, &packings.groups[g], &groups[g], &materials,
+                    speed);
     for (int k = 0; k < job->n_insertions; k++)
         print_insertion(job, k, &materials, speed);
     materials_clear(&materials);
     packings_close(&packings);
+    chain_close(&before);
     free(groups);
     return n;
 }
@@ -469,7 +517,8 @@ static void print_start(const struct job *job, const struct comm *comm)
 {
     struct simulation sim;
     char what[160];
-    simulation_create(&sim, comm, job, PAIR_KERNEL_AUTO);
+    if (simulation_create(&sim, comm, job, PAIR_KERNEL_AUTO) != REPORT_FINISHED)
+        return;
     step_forces(&sim);
     survey_warn(job, &sim.bodies, &sim.spheres, comm);
     const double deepest = watch_deepest(&sim, what, sizeof what);

@@ -15,6 +15,10 @@ struct mistakes;
  * only the scene shows.  Local, on the rank that read the job. */
 bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes);
 
+/* Fills in the same from the job as used, of the run that is to be resumed: what that started
+ * from (`start`) may be gone.  Call check_complete next.  Local. */
+void check_recall(struct job *job, const struct job *used);
+
 /* `tremie check`: prints the scene, critical steps, cost estimate and warnings, after a look at
  * the contacts of the start.  Speaks on one rank.  Collective. */
 void check_print(const struct job *job, const struct comm *comm);

@@ -197,7 +197,9 @@ static int prepare(struct drive *drive)
     if (status != REPORT_FINISHED)
         return status;
     if (!found)
-        simulation_create(&drive->sim, drive->comm, drive->job, drive->options->isa);
+        status = simulation_create(&drive->sim, drive->comm, drive->job, drive->options->isa);
+    if (status != REPORT_FINISHED)
+        return status;
     describe_run(drive);
     survey_warn(drive->job, &drive->sim.bodies, &drive->sim.spheres, drive->comm);
     if (found)

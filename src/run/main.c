@@ -7,6 +7,7 @@
  */
 #include <mpi.h>
 #include <stdio.h>
+#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
@@ -20,6 +21,8 @@
 #include "run/control.h"
 #include "run/drive.h"
 #include "run/options.h"
+#include "store/file.h"
+#include "store/run_folder.h"
 #include "store/surface_file.h"
 
 static const char USAGE[] =
@@ -40,6 +43,34 @@ static const char USAGE[] =
     "checkpoint;\n"
     "other: a bug in tremie\n";
 
+/* A run that resumes knows what it started from (run/check, check_recall). */
+static void recall(struct job *job, const struct options *options)
+{
+    struct run_folder folder = {.lock = -1};
+    struct mistakes mistakes;
+    struct job used;
+    char *text = NULL;
+    if (!job->start.given || options->command != OPTIONS_RUN || options->fresh)
+        return;
+    folder.path =
+        options->out != NULL ? array_string(options->out) : array_format("runs/%s", job->name);
+    char *path = array_format("%s/job.yaml", folder.path);
+    int64_t *steps = NULL;
+    const bool resumes = run_folder_checkpoints(&folder, &steps) > 0;
+    char *why = resumes ? file_read(path, INT_MAX, &text) : NULL;
+    mistakes_init(&mistakes);
+    if (text != NULL && job_read_text(&used, path, text, &mistakes)) {
+        check_recall(job, &used);
+        job_clear(&used);
+    }
+    mistakes_clear(&mistakes);
+    free(why);
+    free(text);
+    free(steps);
+    free(path);
+    free(folder.path);
+}
+
 /* Reads the job on rank 0; everybody gets its complete text.  Returns a REPORT_ status.
  * Collective. */
 static int read_job(const struct comm *comm, const struct options *options, struct job *job,
@@ -50,9 +81,11 @@ static int read_job(const struct comm *comm, const struct options *options, stru
     int64_t size = 0;
     bool fine = true;
     if (comm->rank == 0) {
-        fine =
-            job_read(job, options->job, options->n_overrides, options->overrides, &mistakes) &&
-            check_complete(job, comm->n_ranks, &mistakes);
+        fine = job_read(job, options->job, options->n_overrides, options->overrides, &mistakes);
+        if (fine) {
+            recall(job, options);
+            fine = check_complete(job, comm->n_ranks, &mistakes);
+        }
         mistakes_print(&mistakes);
         *text = fine ? job_write(job) : NULL;
         size = fine ? (int64_t)strlen(*text) + 1 : 0;

@@ -13,6 +13,7 @@
 #include "model/gravity.h"
 #include "model/order.h"
 #include "model/packings.h"
+#include "run/chain.h"
 #include "run/redistribute.h"
 #include "store/body_notes.h"
 #include "store/checkpoint.h"
@@ -139,14 +140,14 @@ void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
     sections_begin(&sim->sections, spheres, i);
 }
 
-/* The groups' spheres: of each, this rank begins with a slice. */
-static void add_groups(struct simulation *sim)
+/* The groups' spheres, random ones clear of those there `before`: of each, this rank begins with a slice. */
+static void add_groups(struct simulation *sim, const struct packing *before)
 {
     const int64_t rank = sim->comm->rank, n_ranks = sim->comm->n_ranks;
     struct packings packings;
     struct mistakes mistakes;
     mistakes_init(&mistakes);
-    CHECK(packings_open(&packings, sim->job, &sim->bodies, sphere_file_read, &mistakes),
+    CHECK(packings_open(&packings, sim->job, &sim->bodies, before, sphere_file_read, &mistakes),
           "a packing was there and has gone: %s", mistakes.list[0].text);
     mistakes_clear(&mistakes);
     for (int g = 0; g < packings.n; g++) {
@@ -162,14 +163,46 @@ static void add_groups(struct simulation *sim)
     packings_close(&packings);
 }
 
-void simulation_create(struct simulation *sim, const struct comm *comm, const struct job *job,
-                       enum pair_kernel_isa isa)
+int simulation_chain_group(const struct job *job)
 {
+    return job->n_spheres + job->n_insertions;
+}
+
+/* Opens the state that the job starts from, if it does from one. */
+static bool open_chain(struct chain *chain, const struct job *job)
+{
+    struct mistakes mistakes;
+    mistakes_init(&mistakes);
+    *chain = (struct chain){.path = NULL};
+    const bool fine = !job->start.given || chain_open(chain, job, &mistakes);
+    mistakes_print(&mistakes);
+    mistakes_clear(&mistakes);
+    return fine;
+}
+
+int simulation_create(struct simulation *sim, const struct comm *comm, const struct job *job,
+                      enum pair_kernel_isa isa)
+{
+    struct chain chain;
+    int status = comm_agree(comm, open_chain(&chain, job) ? REPORT_FINISHED : REPORT_BAD_INPUT);
+    if (status != REPORT_FINISHED) {
+        chain_close(&chain);
+        return status;
+    }
     begin(sim, comm, job);
-    add_groups(sim);
+    if (job->start.given)
+        status = chain_begin(&chain, sim);
+    if (status != REPORT_FINISHED) {
+        chain_close(&chain);
+        simulation_destroy(sim);
+        return status;
+    }
+    add_groups(sim, &chain.packing);
+    chain_close(&chain);
     sim->spheres.n_all = sim->spheres.n_owned;
     order_renew(&sim->spheres, comm);
     finish(sim, isa);
+    return REPORT_FINISHED;
 }
 
 /* Files of before there was such a total have none. */

@@ -86,9 +86,11 @@ struct simulation {
     struct runtime runtime;
 };
 
-/* Builds the scene of the job, at step 0, distributed and searched.  Collective. */
-void simulation_create(struct simulation *sim, const struct comm *comm, const struct job *job,
-                       enum pair_kernel_isa isa);
+/* Builds the scene of the job, at step 0, distributed and searched.  Returns a REPORT_ status,
+ * the reason said, when what the job starts from cannot be read; then there is nothing to
+ * destroy.  Collective. */
+int simulation_create(struct simulation *sim, const struct comm *comm, const struct job *job,
+                      enum pair_kernel_isa isa);
 /* The same from a checkpoint.  Returns a REPORT_ status, the reason said.  Collective. */
 int simulation_restart(struct simulation *sim, const struct comm *comm, const struct job *job,
                        enum pair_kernel_isa isa, const char *checkpoint_path);
@@ -106,6 +108,9 @@ void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
 struct runtime_sizes simulation_sizes(const struct simulation *sim);
 /* The rows so far alone.  Collective. */
 int simulation_save_series(struct simulation *sim, const struct run_folder *folder);
+
+/* The group of spheres that another job has left: after those of the job and its insertions. */
+int simulation_chain_group(const struct job *job);
 
 /* Steps in a time, rounded; 1e15 at most.  Local. */
 int64_t simulation_steps(double time, double step);
