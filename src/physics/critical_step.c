@@ -34,9 +34,11 @@ struct critical_step_contact critical_step_contact(const struct material_pair *p
         .damping = {4.0 * c_n, 2.0 * c_t, rolls ? 2.0 * c_t : 0.0}};
 }
 
-double critical_step_share(double inverse_mass, double curvature, double curvature_of_partner)
+struct critical_step_side critical_step_side(double inverse_mass, double curvature,
+                                             double curvature_of_partner)
 {
-    return inverse_mass * (1.0 + curvature_of_partner / curvature);
+    const double part = curvature / (curvature + curvature_of_partner); /* R* over R */
+    return (struct critical_step_side){inverse_mass / part, part * part};
 }
 
 static double larger(double a, double b)
@@ -45,11 +47,12 @@ static double larger(double a, double b)
 }
 
 void critical_step_add(struct critical_step_sums *sums,
-                       const struct critical_step_contact *contact, double share)
+                       const struct critical_step_contact *contact,
+                       const struct critical_step_side *side)
 {
-    const double *k = contact->stiffness, *d = contact->damping;
-    sums->stiffness += share * larger(k[0], 3.5 * k[1] + 2.5 * k[2]);
-    sums->damping += share * larger(d[0], 3.5 * d[1] + 2.5 * d[2]);
+    const double *k = contact->stiffness, *d = contact->damping, arm = 2.5 * side->arm;
+    sums->stiffness += side->share * larger(k[0], 3.5 * k[1] + arm * k[2]);
+    sums->damping += side->share * larger(d[0], 3.5 * d[1] + arm * d[2]);
 }
 
 double critical_step_of_sums(const struct critical_step_sums *sums)
@@ -60,15 +63,17 @@ double critical_step_of_sums(const struct critical_step_sums *sums)
 
 /* Adds across n n + along (1 - n n) for places, 5/2 along (1 - n n) + 5/2 of what resists
  * rolling and twisting for turns, and what joins the two: a turn moves the surface. */
-static void add_block(double m[6][6], const double k[3], double share, const double n[3])
+static void add_block(double m[6][6], const double k[3], const struct critical_step_side *side,
+                      const double n[3])
 {
-    const double across = share * k[0], along = share * k[1];
+    const double across = side->share * k[0], along = side->share * k[1];
+    const double turn = side->share * side->arm * k[2];
     const double join = sqrt(2.5) * along;
     for (int r = 0; r < 3; r++) {
         for (int c = 0; c < 3; c++) {
             const double nn = n[r] * n[c], rest = (r == c ? 1.0 : 0.0) - nn;
             m[r][c] += across * nn + along * rest;
-            m[3 + r][3 + c] += 2.5 * (along * rest + (r == c ? share * k[2] : 0.0));
+            m[3 + r][3 + c] += 2.5 * (along * rest + (r == c ? turn : 0.0));
         }
         const int p = (r + 1) % 3, q = (r + 2) % 3;
         m[r][3 + p] += join * n[q];
@@ -79,11 +84,11 @@ static void add_block(double m[6][6], const double k[3], double share, const dou
 }
 
 void critical_step_add_matrix(struct critical_step_matrix *matrix,
-                              const struct critical_step_contact *contact, double share,
-                              const double normal[3])
+                              const struct critical_step_contact *contact,
+                              const struct critical_step_side *side, const double normal[3])
 {
-    add_block(matrix->stiffness, contact->stiffness, share, normal);
-    add_block(matrix->damping, contact->damping, share, normal);
+    add_block(matrix->stiffness, contact->stiffness, side, normal);
+    add_block(matrix->damping, contact->damping, side, normal);
 }
 
 static void square(double m[6][6])
@@ -99,8 +104,8 @@ static void square(double m[6][6])
     memcpy(m, s, sizeof s);
 }
 
-/* The 16th root of the trace of the 16th power: the largest eigenvalue, as none is negative, or
- * up to 6^(1/16) = 1.12 times it. */
+/* The 32nd root of the trace of the 32nd power: the largest eigenvalue, as none is negative, or
+ * up to 6^(1/32) = 1.058 times it. */
 double critical_step_load(const struct critical_step_matrix *matrix, double dt)
 {
     double m[6][6], trace = 0.0, sum = 0.0;
@@ -114,12 +119,12 @@ double critical_step_load(const struct critical_step_matrix *matrix, double dt)
     for (int r = 0; r < 6; r++)
         for (int c = 0; c < 6; c++)
             m[r][c] /= trace;
-    for (int k = 0; k < 3; k++)
+    for (int k = 0; k < 4; k++)
         square(m);
     for (int r = 0; r < 6; r++)
         for (int c = 0; c < 6; c++)
             sum += m[r][c] * m[r][c];
-    return trace * sqrt(sqrt(sqrt(sqrt(sum))));
+    return trace * sqrt(sqrt(sqrt(sqrt(sqrt(sum)))));
 }
 
 double critical_step_of_matrix(const struct critical_step_matrix *matrix)
@@ -143,15 +148,15 @@ double critical_step_of_matrix(const struct critical_step_matrix *matrix)
     return low;
 }
 
-double critical_step_amid(const struct critical_step_contact *contact, double inverse_mass,
-                          int n)
+struct critical_step_sums critical_step_amid(const struct critical_step_contact *contact,
+                                             double inverse_mass, int n)
 {
     const double share = 2.0 * inverse_mass * n / 3.0, *k = contact->stiffness,
-                 *c = contact->damping;
-    const struct critical_step_sums sums = {
-        share * larger(k[0] + 2.0 * k[1], 5.0 * k[1] + 7.5 * k[2]),
-        share * larger(c[0] + 2.0 * c[1], 5.0 * c[1] + 7.5 * c[2])};
-    return critical_step_of_sums(&sums);
+                 *d = contact->damping;
+    const double turn = 7.5 * 0.25; /* of three axes, at an arm of half a radius */
+    return (struct critical_step_sums){
+        share * larger(k[0] + 2.0 * k[1], 5.0 * k[1] + turn * k[2]),
+        share * larger(d[0] + 2.0 * d[1], 5.0 * d[1] + turn * d[2])};
 }
 
 double critical_step_rest_overlap(const struct material_pair *pair, double weight,

@@ -28,7 +28,7 @@ double critical_step_hertz_duration(double mass, double radius, double young, do
 
 /* A contact, as integration feels it. */
 struct critical_step_contact {
-    /* Across and along the contact, and of rolling and twisting, as at an arm of R [N/m]. */
+    /* Across and along the contact, and of rolling and twisting, as at an arm of R* [N/m]. */
     double stiffness[3];
     double damping[3]; /* likewise, times 4, 2, 2: dashpots use velocities of the past [kg/s] */
 };
@@ -37,9 +37,13 @@ struct critical_step_contact {
 struct critical_step_contact critical_step_contact(const struct material_pair *pair,
                                                    double contact_radius, double mass);
 
-/* The part of a contact that falls to the first sphere, over its mass [1/kg]; curvatures in
- * 1/m, the partner's 0 for a wall.  (6.4) */
-double critical_step_share(double inverse_mass, double curvature, double curvature_of_partner);
+/* What of a contact falls to the first sphere; curvatures in 1/m, the partner's 0 for a wall. */
+struct critical_step_side {
+    double share; /* of the contact, over the sphere's mass [1/kg]  (6.4) */
+    double arm;   /* R* over R, squared [-] */
+};
+struct critical_step_side critical_step_side(double inverse_mass, double curvature,
+                                             double curvature_of_partner);
 
 /* Sums over a sphere's contacts: of the stiffer direction, turning included. */
 struct critical_step_sums {
@@ -47,7 +51,8 @@ struct critical_step_sums {
     double damping;   /* [1/s] */
 };
 void critical_step_add(struct critical_step_sums *sums,
-                       const struct critical_step_contact *contact, double share);
+                       const struct critical_step_contact *contact,
+                       const struct critical_step_side *side);
 /* The step up to which such springs are stable [s]; infinite without springs.  (6.5) */
 double critical_step_of_sums(const struct critical_step_sums *sums);
 
@@ -59,16 +64,17 @@ struct critical_step_matrix {
 };
 /* Adds a contact whose normal points away from the sphere. */
 void critical_step_add_matrix(struct critical_step_matrix *matrix,
-                              const struct critical_step_contact *contact, double share,
-                              const double normal[3]);
-/* dt^2 / 4 times the largest eigenvalue, or up to an eighth more: not above 1 is stable [-]. */
+                              const struct critical_step_contact *contact,
+                              const struct critical_step_side *side, const double normal[3]);
+/* dt^2 / 4 times the largest eigenvalue, or up to 6 % more: not above 1 is stable [-]. */
 double critical_step_load(const struct critical_step_matrix *matrix, double dt);
 /* The step at which that is 1 [s]. */
 double critical_step_of_matrix(const struct critical_step_matrix *matrix);
 
-/* The step that n equal contacts allow a sphere on all sides, among its like [s].  (6.7) */
-double critical_step_amid(const struct critical_step_contact *contact, double inverse_mass,
-                          int n);
+/* What n equal contacts on all sides are to a sphere among its like: add one that is deeper with
+ * critical_step_add().  (6.7) */
+struct critical_step_sums critical_step_amid(const struct critical_step_contact *contact,
+                                             double inverse_mass, int n);
 
 /* Overlap at rest of a sphere that weighs this much on one contact [m], from weight [N] and
  * 1/R* [1/m]. */

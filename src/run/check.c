@@ -342,10 +342,6 @@ static bool is_inside(const struct extent *centres, const struct job *job)
     return inside;
 }
 
-/* Twelve contacts are hardly all as deep as the fastest impact: steps up to twice what these
- * would bear have run without alarm (jobs/hopper_empty.yaml at 1.28). */
-static const double DENSE_BORNE = 2.0;
-
 static void warn_of_limits(const struct job *job, const char *name, const struct limits *limits)
 {
     const double step = job->time.step, contact = limits->shortest.duration / step;
@@ -354,17 +350,18 @@ static void warn_of_limits(const struct job *job, const char *name, const struct
             "time.step is %.3g of the Rayleigh step of '%s'; runs beyond 0.4 are likely "
             "to be unstable",
             step / limits->rayleigh, name);
-    else if (step > DENSE_BORNE * limits->springs)
-        report_warn("time.step is %.3g of what twelve such contacts of '%s' allow; a dense bed "
-                    "would be stopped as unstable",
-                    step / limits->springs, name);
+    else if (step > limits->springs)
+        report_warn(
+            "time.step is %.3g of what a full bed allows '%s' as it is struck; it would "
+            "be stopped as unstable",
+            step / limits->springs, name);
     else if (contact < 20.0)
         report_warn("impacts of '%s' at %.3g m/s last %.3g steps; below 20, restitution "
                     "scatters by over 0.013",
                     name, limits->speed, contact);
     if (limits->overlap > job->watch.overlap)
-        report_warn("impacts of '%s' at %.3g m/s overlap by %.2g of a radius, more than "
-                    "watch.overlap = %.2g: too soft for them",
+        report_warn("impacts of '%s' at %.3g m/s overlap by %.3g of a radius, more than "
+                    "watch.overlap = %.3g: too soft for them",
                     name, limits->speed, limits->overlap, job->watch.overlap);
 }
 
@@ -375,9 +372,10 @@ static void print_limits(const struct job *job, const struct limits *limits)
                step / limits->rayleigh);
     if (limits->shortest.partner == NULL)
         return;
-    report_say("          twelve contacts as deep as an impact at %.3g m/s, %.2g of a radius: "
-               "critical step %.4g s, the step is %.3g of it",
-               limits->speed, limits->overlap, limits->springs, step / limits->springs);
+    report_say(
+        "          at the bottom of a full bed, struck at %.3g m/s, %.3g of a radius deep: "
+        "critical step %.4g s, the step is %.3g of it",
+        limits->speed, limits->overlap, limits->springs, step / limits->springs);
     report_say("          such an impact lasts %.3g steps on %s, %.3g on %s: restitution "
                "scatters by about %.1g",
                limits->shortest.duration / step, limits->shortest.partner,

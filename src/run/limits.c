@@ -15,8 +15,8 @@
 static const double SPRINGS_SHARE = 0.8;
 /* Overlap over radius at which springs are taken at most: deeper, a run would be stopped. */
 static const double OVERLAP_MOST = 0.1;
-/* Partners of a sphere in the densest packing of equal spheres. */
-enum { PARTNERS = 12 };
+/* Partners of a sphere in a bed, each as deep as the bed can press it. */
+enum { PARTNERS = 8 };
 
 struct limits limits_nothing(double speed)
 {
@@ -27,20 +27,32 @@ struct limits limits_nothing(double speed)
                            .longest = {0.0, NULL}};
 }
 
-/* The sphere amid partners of its own size, across this pair of materials. */
-static void add_partner(struct limits *limits, const struct material_pair *pair,
-                        const char *partner, double mass, double radius)
+static double contact_radius(const struct material_pair *pair, double radius, double overlap)
 {
-    double overlap =
-        critical_step_impact_overlap(pair, 0.5 * mass, 2.0 / radius, limits->speed);
-    limits->overlap = overlap > limits->overlap * radius ? overlap / radius : limits->overlap;
-    const double duration =
-        critical_step_duration(pair, 0.5 * mass, 2.0 / radius, limits->speed);
     if (!(overlap <= OVERLAP_MOST * radius))
         overlap = OVERLAP_MOST * radius;
-    const struct critical_step_contact contact = critical_step_contact(
-        pair, pair->linear > 0.0 ? 1.0 : sqrt(0.5 * radius * overlap), 0.5 * mass);
-    const double springs = critical_step_amid(&contact, 1.0 / mass, PARTNERS);
+    return pair->linear > 0.0 ? 1.0 : sqrt(0.5 * radius * overlap);
+}
+
+/* The sphere amid partners of its own size under a column of them of this head [m2/s2], while
+ * another strikes it, across this pair of materials. */
+static void add_partner(struct limits *limits, const struct material_pair *pair,
+                        const char *partner, double mass, double radius, double head)
+{
+    const double half = 0.5 * mass, curvature = 2.0 / radius; /* m*, 1/R* */
+    const double impact = critical_step_impact_overlap(pair, half, curvature, limits->speed);
+    const double rest =
+        critical_step_rest_overlap(pair, mass * head / (2.0 * radius), curvature);
+    const double duration = critical_step_duration(pair, half, curvature, limits->speed);
+    const struct critical_step_contact pressed = critical_step_contact(
+                                           pair, contact_radius(pair, radius, rest), half),
+                                       struck = critical_step_contact(
+                                           pair, contact_radius(pair, radius, impact), half);
+    const struct critical_step_side side = critical_step_side(1.0 / mass, 1.0, 1.0);
+    struct critical_step_sums sums = critical_step_amid(&pressed, 1.0 / mass, PARTNERS);
+    critical_step_add(&sums, &struck, &side);
+    const double springs = critical_step_of_sums(&sums);
+    limits->overlap = impact > limits->overlap * radius ? impact / radius : limits->overlap;
     limits->springs = springs < limits->springs ? springs : limits->springs;
     if (duration < limits->shortest.duration)
         limits->shortest = (struct limits_impact){duration, partner};
@@ -56,12 +68,13 @@ void limits_add(struct limits *limits, const struct job *job, const struct mater
     const double mass =
         m->density * 4.0 / 3.0 * 3.14159265358979323846 * radius * radius * radius;
     const double rayleigh = critical_step_rayleigh(radius, m->density, m->young, m->poisson);
+    const double fall = limits_fall_speed(job);
     limits->rayleigh = rayleigh < limits->rayleigh ? rayleigh : limits->rayleigh;
     for (int b = 0; b < materials->n; b++) {
         const struct material_pair *pair =
             &materials->pairs[sphere->material * materials->n + b];
         if (pair->normal > 0.0)
-            add_partner(limits, pair, job->materials[b].name, mass, radius);
+            add_partner(limits, pair, job->materials[b].name, mass, radius, fall * fall);
     }
 }
 

@@ -2,9 +2,9 @@
  * What a scene allows of the time step, known before it runs: the Rayleigh step, the step that
  * the springs of the expected contacts allow, and how many steps an impact lasts.
  *
- * Contacts are not there yet, so they are expected: twelve partners of the same size, each as
- * deep as an impact at the highest speed that can be foreseen.  That is worse than what
- * happens; what does happen is watched in the run (run/watch.h).
+ * Contacts are not there yet, so they are expected: a sphere amid eight partners of its size, each
+ * pressed on it as by a column of spheres as high as the domain, that another strikes at the
+ * highest speed that can be foreseen.  What does happen is watched in the run (run/watch.h).
  */
 #ifndef TREMIE_RUN_LIMITS_H
 #define TREMIE_RUN_LIMITS_H
@@ -21,7 +21,7 @@ struct limits_impact {
 
 struct limits {
     double rayleigh; /* least of the spheres [s]                                      (6.1) */
-    double springs;  /* critical step of twelve contacts that deep, least of all [s]  (6.6) */
+    double springs;  /* critical step of such contacts, least of all [s]           (6.7) */
     double speed;    /* highest that can be foreseen [m/s] */
     double overlap;  /* largest of an impact at that speed, over radius [-] */
     struct limits_impact shortest, longest;

@@ -47,7 +47,7 @@ static void fail(struct watch *watch, enum watch_failure failure)
 /* A touching contact: what it is, and how it is split between its spheres. */
 struct split {
     struct critical_step_contact contact;
-    double share[2]; /* [1/kg] */
+    struct critical_step_side side[2];
 };
 
 static struct split split_pair(const struct simulation *sim, int k)
@@ -61,7 +61,7 @@ static struct split split_pair(const struct simulation *sim, int k)
     return (struct split){
         critical_step_contact(&sim->materials.pairs[pair],
                               list->history[CONTACT_RADIUS_LANE][k], 1.0 / (w_i + w_j)),
-        {critical_step_share(w_i, u_i, u_j), critical_step_share(w_j, u_j, u_i)}};
+        {critical_step_side(w_i, u_i, u_j), critical_step_side(w_j, u_j, u_i)}};
 }
 
 /* The largest of what a contact's springs and dashpots have, across and along. */
@@ -92,10 +92,10 @@ static struct split split_facet(const struct simulation *sim,
         critical_step_contact(
             &sim->materials.pairs[spheres->material[i] * sim->materials.n + wall],
             contact->history[CONTACT_RADIUS_LANE], 1.0 / w),
-        {critical_step_share(w, sphere_curvature(spheres, i), 0.0), 0.0}};
+        {critical_step_side(w, sphere_curvature(spheres, i), 0.0)}};
     if (sim->bodies.list[contact->body].rigid != NULL && sim->watch.loads != NULL)
-        split.share[0] =
-            yielding_share(&split.contact, split.share[0], &sim->watch.loads[contact->body]);
+        split.side[0].share = yielding_share(&split.contact, split.side[0].share,
+                                             &sim->watch.loads[contact->body]);
     return split;
 }
 
@@ -141,15 +141,15 @@ static void sum_contacts(const struct simulation *sim, struct critical_step_sums
         if (!contact_touches(list, k))
             continue;
         const struct split split = split_pair(sim, k);
-        critical_step_add(&sums[list->first[k]], &split.contact, split.share[0]);
-        critical_step_add(&sums[list->second[k]], &split.contact, split.share[1]);
+        critical_step_add(&sums[list->first[k]], &split.contact, &split.side[0]);
+        critical_step_add(&sums[list->second[k]], &split.contact, &split.side[1]);
     }
     for (int k = 0; k < sim->facets.n; k++) {
         const struct facet_contact *contact = &sim->facets.list[k];
         if (!facet_touches(contact))
             continue;
         const struct split split = split_facet(sim, contact);
-        critical_step_add(&sums[contact->sphere], &split.contact, split.share[0]);
+        critical_step_add(&sums[contact->sphere], &split.contact, &split.side[0]);
     }
 }
 
@@ -171,7 +171,7 @@ static void fill_matrices(const struct simulation *sim, const int *slots,
                 vec3_scale((s == 0 ? 1.0 : -1.0) / vec3_norm(between), between);
             if (slots[sides[s]] >= 0)
                 critical_step_add_matrix(&matrices[slots[sides[s]]], &split.contact,
-                                         split.share[s], (double[3]){n.x, n.y, n.z});
+                                         &split.side[s], (double[3]){n.x, n.y, n.z});
         }
     }
     for (int k = 0; k < sim->facets.n; k++) {
@@ -184,7 +184,7 @@ static void fill_matrices(const struct simulation *sim, const int *slots,
                 .normal; /* from the feature to the centre */
         const struct split split = split_facet(sim, contact);
         critical_step_add_matrix(&matrices[slots[contact->sphere]], &split.contact,
-                                 split.share[0], (double[3]){-n.x, -n.y, -n.z});
+                                 &split.side[0], (double[3]){-n.x, -n.y, -n.z});
     }
 }
 
@@ -679,7 +679,7 @@ static void explain_step(const struct simulation *sim, const char *when, double 
 {
     report_error("step too large at %s: time.step = %.4g s is %.3g of the critical step of the "
                  "present contacts, %.4g s%s%s; the deepest, %s, overlap by %.2g of a radius; "
-                 "set time.step to %.2g s or less, or to auto",
+                 "set time.step to %.2g s or less, or to auto, and start with --fresh",
                  when, sim->dt, sim->dt / critical, critical, what[0] != '\0' ? "; " : "", what,
                  deepest->what, deepest->overlap,
                  critical_step_round_down(STEP_ADVISED * critical));

@@ -12,6 +12,7 @@
 #include "base/report.h"
 #include "job/job.h"
 #include "physics/critical_step.h"
+#include "run/check.h"
 #include "run/simulation.h"
 #include "run/step.h"
 #include "store/run_folder.h"
@@ -27,17 +28,27 @@ struct rest {
     double speed; /* of the pushes [m/s] */
 };
 
-static void read_job(struct job *job, const char *yaml, double dt)
+static void read_job(struct job *job, const char *yaml, double end, const char *step)
 {
     struct mistakes mistakes;
-    char *text = array_format("time: {end: %.17g, step: %.17g}\n%s", 1e12 * dt, dt, yaml);
+    char *text = array_format("time: {end: %.17g, step: %s}\n%s", end, step, yaml);
     mistakes_init(&mistakes);
-    if (!job_read_text(job, "stability.yaml", text, &mistakes)) {
+    if (!job_read_text(job, "stability.yaml", text, &mistakes) ||
+        !check_complete(job, 1, &mistakes)) {
         mistakes_print(&mistakes);
         CHECK(false, "the job is not valid");
     }
     mistakes_clear(&mistakes);
     free(text);
+}
+
+static double automatic_step(const char *yaml)
+{
+    struct job job;
+    read_job(&job, yaml, 1.0, "auto");
+    const double step = job.time.step;
+    job_clear(&job);
+    return step;
 }
 
 static double kinetic_energy(const struct simulation *sim)
@@ -194,11 +205,14 @@ struct limit limit_find(const char *yaml, double dt, int n_steps, enum limit_pus
     const struct comm comm = comm_world();
     const char *scratch = getenv("SCRATCH");
     struct rest rest = {.comm = &comm, .push = push};
-    read_job(&rest.job, yaml, dt);
+    char first[32];
+    snprintf(first, sizeof first, "%.17g", dt);
+    read_job(&rest.job, yaml, 1e12 * dt, first);
     snprintf(rest.folder, sizeof rest.folder, "%.40s/limit-XXXXXX",
              scratch != NULL ? scratch : "/tmp");
     CHECK(mkdtemp(rest.folder) != NULL, "cannot make %s", rest.folder);
     struct limit limit = come_to_rest(&rest, n_steps);
+    limit.automatic = automatic_step(yaml);
     rest.job.damping = 0.0;
     double low = 0.2 * limit.bound, high = 5.0 * limit.bound;
     CHECK(is_stable(&rest, low), "the scene moves by itself, or fails far below the bound");

@@ -18,6 +18,7 @@ enum limit_push {
 struct limit {
     double step;         /* the real limit, to 2e-3 of it [s] */
     double bound;        /* critical step of the contacts at rest (THEORY.md (6.5)) [s] */
+    double automatic;    /* what `step: auto` takes [s] */
     double rayleigh;     /* least Rayleigh step of the spheres [s] */
     double partners;     /* contacts of a sphere, in the mean */
     double overlap_mean; /* over radius */

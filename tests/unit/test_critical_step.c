@@ -57,6 +57,67 @@ TEST(two_digits_stay)
     }
 }
 
+/* A sphere of 2 kg on one wall: stiffness across 200 N/m, dashpot 5 kg/s. */
+static const struct critical_step_contact contact = {{200.0, 0.0, 0.0}, {4.0 * 5.0, 0.0, 0.0}};
+static const double z[3] = {0.0, 0.0, 1.0};
+
+/* dt = 2/w (sqrt(1 + 4 xi^2) - 2 xi), w = 10/s, xi = 5/(2 x 20) = .125. */
+TEST(one_contact_across)
+{
+    const struct critical_step_side side = critical_step_side(0.5, 10.0, 0.0);
+    struct critical_step_sums sums = {0.0, 0.0};
+    struct critical_step_matrix matrix = {0};
+    const double expected = 0.2 * (sqrt(1.0 + 4.0 * 0.125 * 0.125) - 0.25);
+    EXPECT_NEAR(side.share, 0.5, 1e-15);
+    EXPECT_NEAR(side.arm, 1.0, 1e-15);
+    critical_step_add(&sums, &contact, &side);
+    critical_step_add_matrix(&matrix, &contact, &side, z);
+    EXPECT_NEAR(critical_step_of_sums(&sums), expected, 1e-15);
+    EXPECT_NEAR(critical_step_of_matrix(&matrix), expected, 1e-11);
+    EXPECT_NEAR(critical_step_load(&matrix, expected), 1.0, 1e-12);
+}
+
+/* Along the contact of one wall: place and turn together have 7/2 k_t. */
+TEST(one_contact_along)
+{
+    const struct critical_step_contact grip = {{0.0, 200.0, 0.0}, {0.0, 0.0, 0.0}};
+    const struct critical_step_side side = critical_step_side(0.5, 10.0, 0.0);
+    struct critical_step_matrix matrix = {0};
+    critical_step_add_matrix(&matrix, &grip, &side, z);
+    /* Two directions have it, so the root of the trace is 2^(1/32) too large. */
+    EXPECT_NEAR(critical_step_load(&matrix, 2.0 / sqrt(350.0)), pow(2.0, 1.0 / 32.0), 1e-12);
+}
+
+/* Between spheres of 1 and 3 m: R* is 3/4 m, and the smaller has 4/3 of the contact. */
+TEST(sides_of_a_contact)
+{
+    const struct critical_step_side small = critical_step_side(0.5, 1.0, 1.0 / 3.0),
+                                    large = critical_step_side(0.25, 1.0 / 3.0, 1.0);
+    EXPECT_NEAR(small.share, 0.5 * 4.0 / 3.0, 1e-15);
+    EXPECT_NEAR(large.share, 0.25 * 4.0, 1e-15);
+    EXPECT_NEAR(small.arm, 0.5625, 1e-15);
+    EXPECT_NEAR(large.arm, 0.0625, 1e-15);
+}
+
+/* Six contacts along the axes are on all sides alike: what (6.7) says
+ * of n = 6 is what their matrix has. */
+TEST(contacts_on_all_sides)
+{
+    const struct critical_step_contact full = {{200.0, 90.0, 90.0}, {7.0, 3.0, 3.0}};
+    const struct critical_step_side side = critical_step_side(0.5, 10.0, 10.0);
+    struct critical_step_matrix matrix = {0};
+    for (int k = 0; k < 6; k++) {
+        double n[3] = {0.0, 0.0, 0.0};
+        n[k / 2] = k % 2 == 0 ? 1.0 : -1.0;
+        critical_step_add_matrix(&matrix, &full, &side, n);
+    }
+    const struct critical_step_sums sums = critical_step_amid(&full, 0.5, 6);
+    const double exact = critical_step_of_sums(&sums);
+    /* Three equal eigenvalues, or six. */
+    EXPECT(critical_step_of_matrix(&matrix) <= exact * (1.0 + 1e-9));
+    EXPECT(critical_step_of_matrix(&matrix) >= exact / pow(6.0, 1.0 / 32.0));
+}
+
 int main(int argc, char **argv)
 {
     return check_run(argc, argv);
