@@ -59,11 +59,13 @@ static void put_sphere(const struct simulation *sim, struct table *table, int i)
     double velocity[3], spin[3];
     observe_motion(sim, i, velocity, spin);
     const double *force = spheres->force[i].lane;
+    const struct vec3 x = periodic_place(&spheres->periodic, sphere_position(spheres, i));
+    const double position[3] = {x.x, x.y, x.z};
     const double radius = sphere_radius(spheres, i),
                  mass = 1.0 / sphere_inverse_mass(spheres, i);
     const void *const values[SNAPSHOT_N_FIELDS] = {
         [SNAPSHOT_ID] = &spheres->id[i],
-        [SNAPSHOT_POSITION] = sphere_position(spheres, i),
+        [SNAPSHOT_POSITION] = position,
         [SNAPSHOT_RADIUS] = &radius,
         [SNAPSHOT_VELOCITY] = velocity,
         [SNAPSHOT_ANGULAR_VELOCITY] = spin,
@@ -106,16 +108,18 @@ static void put_contact(const struct simulation *sim, struct table *table, int64
     const double width = list->history[CONTACT_RADIUS_LANE][k];
     const int pair = spheres->material[i] * sim->materials.n + spheres->material[j];
     const double push = sim->materials.pairs[pair].normal * width * overlap;
-    double place[3], force[3];
+    const struct vec3 within = periodic_place(&spheres->periodic, a);
+    double place[3] = {within.x, within.y, within.z}, force[3];
     for (int c = 0; c < 3; c++) {
-        place[c] = a[c] + d[c] / distance * (a[3] - 0.5 * overlap);
+        place[c] += d[c] / distance * (a[3] - 0.5 * overlap);
         force[c] = push * d[c] / distance + sign * list->history[c][k];
         if (list->history[CONTACT_DRAG_LANE] != NULL)
             force[c] += sign * list->history[CONTACT_DRAG_LANE + c][k];
     }
+    const struct vec3 point = periodic_place(&spheres->periodic, place);
     snapshot_put(table, row, SNAPSHOT_FIRST_ID, &spheres->id[i]);
     snapshot_put(table, row, SNAPSHOT_SECOND_ID, &spheres->id[j]);
-    snapshot_put(table, row, SNAPSHOT_CONTACT_POSITION, place);
+    snapshot_put(table, row, SNAPSHOT_CONTACT_POSITION, (double[3]){point.x, point.y, point.z});
     snapshot_put(table, row, SNAPSHOT_CONTACT_FORCE, force);
 }
 
