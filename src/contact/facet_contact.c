@@ -5,6 +5,11 @@
  * which contacts of such a group act; these, and those that end, are gathered into a batch, in
  * order, for which the law is then taken at once; what comes of it is added contact by contact
  * in the same order. So neither the list nor the size of a batch shows in the result.
+ *
+ * Where facets are finer than spheres, a group is long, and most of it is too far to touch
+ * within the next steps. So each long group knows which of its entries are near, and looks at
+ * the others only when the sphere and the body have together moved as far as these were from
+ * touching. A sphere at rest looks at all once a search.
  */
 #include "contact/facet_contact.h"
 
@@ -39,6 +44,15 @@ struct quick_load {
     struct exact_four force, torque;
 };
 
+/* The entries of a sphere with a body, begin to end of the list; `near` numbers those from
+ * begin on that may touch until the two have moved by `slack`. */
+struct group {
+    int begin, end, n_near;
+    double slack;     /* [m]; negative: not looked at yet */
+    double travelled; /* by the body when it was looked at [m] */
+    struct vec3 from; /* where the sphere was [m] */
+};
+
 struct facet_work {
     struct facet_tree *trees; /* one a body */
     bool has_trees;
@@ -49,6 +63,11 @@ struct facet_work {
     struct facet_kernel_batch batch;
     struct acting acting[FACET_KERNEL_BATCH];
     struct quick_load *loads; /* one a body */
+    bool has_groups;
+    int n_groups, group_capacity, near_capacity;
+    struct group *groups;
+    int *near;         /* of all groups, each at its entries' places */
+    double *travelled; /* at most, one a body [m] */
 };
 
 /* What a step's contacts need. */
@@ -78,6 +97,7 @@ void facet_contacts_init(struct facet_contacts *facets, int n_bodies)
     facets->work = array_allocate_rows(1, sizeof *facets->work);
     facets->work->trees = array_allocate((size_t)n_bodies, sizeof *facets->work->trees);
     facets->work->loads = array_allocate((size_t)n_bodies, sizeof *facets->work->loads);
+    facets->work->travelled = array_allocate((size_t)n_bodies, sizeof(double));
 }
 
 void facet_contacts_clear(struct facet_contacts *facets)
@@ -90,6 +110,9 @@ void facet_contacts_clear(struct facet_contacts *facets)
     free(work->across.features);
     free(work->next);
     free(work->loads);
+    free(work->groups);
+    free(work->near);
+    free(work->travelled);
     facet_local_clear(&work->local);
     free(work);
     free(facets->list);
@@ -128,6 +151,7 @@ static void exchange_lists(struct facet_contacts *facets, int n)
     facets->n = n;
     work->next = list;
     work->next_capacity = capacity;
+    work->has_groups = false;
 }
 
 static void prepare_trees(struct facet_work *work, const struct bodies *bodies)
@@ -296,6 +320,7 @@ int facet_contacts_records(const struct facet_contacts *facets, const struct sph
 void facet_contacts_forget(struct facet_contacts *facets)
 {
     facets->n = 0;
+    facets->work->has_groups = false;
 }
 
 void facet_contacts_restore(struct facet_contacts *facets, int n,
@@ -493,16 +518,84 @@ static void end_group(const struct step *step, int begin, int end)
     }
 }
 
-/* The contacts of one sphere with one body: entries begin to end. */
-static void gather_group(const struct step *step, int begin, int end)
+/* ---- Groups
+ * ----------------------------------------------------------------------------------- */
+
+enum { LONG_GROUP = 6 }; /* shorter ones are looked at as a whole */
+/* How far beyond touching counts as near: of the radius, and in steps of the present speed. */
+static const double NEAR_RADII = 0.05, NEAR_STEPS = 8.0;
+
+static void list_groups(struct facet_contacts *facets)
 {
+    struct facet_work *work = facets->work;
+    const struct facet_contact *list = facets->list;
+    work->n_groups = 0;
+    ARRAY_GROW(work->near, facets->n, work->near_capacity);
+    for (int k = 0, end; k < facets->n; k = end) {
+        for (end = k + 1; end < facets->n; end++)
+            if (list[end].sphere != list[k].sphere || list[end].body != list[k].body)
+                break;
+        ARRAY_GROW(work->groups, work->n_groups + 1, work->group_capacity);
+        work->groups[work->n_groups++] = (struct group){.begin = k, .end = end, .slack = -1.0};
+    }
+    work->has_groups = true;
+}
+
+/* Finds out which entries of a group are near. */
+static void look_around(const struct step *step, struct group *group, struct vec3 centre)
+{
+    struct facet_work *work = step->facets->work;
+    const struct facet_contact *entries = &step->facets->list[group->begin];
+    const struct body *body = &step->bodies->list[entries->body];
+    const double radius = sphere_radius(step->spheres, entries->sphere);
+    const double speed = vec3_norm(vec3_of(sphere_velocity(step->spheres, entries->sphere))) +
+                         (body->moves ? body->speed_max : 0.0);
+    const int n = group->end - group->begin;
+    const bool is_long = n >= LONG_GROUP;
+    group->n_near = 0;
+    group->from = centre;
+    group->travelled = work->travelled[entries->body];
+    group->slack =
+        is_long ? NEAR_RADII * radius + NEAR_STEPS * step->dt * speed : (double)INFINITY;
+    for (int k = 0; k < n; k++)
+        if (!is_long || holds_history(&entries[k]) ||
+            contact_geometry_reaches(&body->mesh, entries[k].feature, centre,
+                                     radius + group->slack))
+            work->near[group->begin + group->n_near++] = k;
+}
+
+static bool must_look(const struct step *step, const struct group *group, struct vec3 centre)
+{
+    const int body = step->facets->list[group->begin].body;
+    const double left = group->slack - (step->facets->work->travelled[body] - group->travelled);
+    const struct vec3 moved = vec3_sub(centre, group->from);
+    return !(left > 0.0 && vec3_dot(moved, moved) < left * left);
+}
+
+/* Bodies are where they are in this step: no point of one has gone farther than this. */
+static void count_travel(const struct step *step)
+{
+    for (int b = 0; b < step->bodies->n; b++)
+        if (step->bodies->list[b].moves)
+            step->facets->work->travelled[b] +=
+                1.001 * step->bodies->list[b].speed_max * step->dt;
+}
+
+/* The contacts of one sphere with one body. */
+static void gather_group(const struct step *step, struct group *place)
+{
+    const int begin = place->begin;
     struct facet_contact *group = &step->facets->list[begin];
     struct facet_local *local = &step->facets->work->local;
     const struct mesh *mesh = &step->bodies->list[group->body].mesh;
     const struct vec3 centre = sphere_place(step->spheres, group->sphere);
     const double radius = sphere_radius(step->spheres, group->sphere);
-    facet_local_search(local, group, end - begin, mesh, &step->spheres->periodic, centre,
-                       radius);
+    if (must_look(step, place, centre))
+        look_around(step, place, centre);
+    if (place->n_near == 0)
+        return;
+    facet_local_search(local, group, &step->facets->work->near[begin], place->n_near, mesh,
+                       &step->spheres->periodic, centre, radius);
     for (int t = 0; t < local->n_touches; t++) {
         const struct facet_local_touch *touch = &local->touches[t];
         if (facet_local_stands(local, t))
@@ -538,18 +631,19 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
                           double dt, bool ledger)
 {
     const struct step step = {facets, spheres, bodies, materials, dt, ledger};
-    const struct facet_contact *list = facets->list;
+    struct facet_work *work = facets->work;
     facets->overlap_max = 0.0;
-    for (int k = 0, end; k < facets->n; k = end) {
-        for (end = k + 1; end < facets->n; end++)
-            if (list[end].sphere != list[k].sphere || list[end].body != list[k].body)
-                break;
-        if (!bodies->list[list[k].body].exists)
-            end_group(&step, k, end);
-        else if (end == k + 1)
-            gather_one(&step, k);
+    if (!work->has_groups)
+        list_groups(facets);
+    count_travel(&step);
+    for (int g = 0; g < work->n_groups; g++) {
+        struct group *group = &work->groups[g];
+        if (!bodies->list[facets->list[group->begin].body].exists)
+            end_group(&step, group->begin, group->end);
+        else if (group->end == group->begin + 1)
+            gather_one(&step, group->begin);
         else
-            gather_group(&step, k, end);
+            gather_group(&step, group);
     }
     empty_batch(&step);
     for (int b = 0; b < facets->n_bodies; b++)

@@ -45,11 +45,13 @@ static bool holds_history(const struct facet_contact *contact)
     return contact->history[CONTACT_RADIUS_LANE] > 0.0;
 }
 
-static void find_touches(struct facet_local *local, const struct facet_contact *group, int n,
-                         const struct mesh *mesh, struct vec3 centre, double radius)
+static void find_touches(struct facet_local *local, const struct facet_contact *group,
+                         const int *near, int n, const struct mesh *mesh, struct vec3 centre,
+                         double radius)
 {
     local->n_touches = local->n_ended = 0;
-    for (int k = 0; k < n; k++) {
+    for (int m = 0; m < n; m++) {
+        const int k = near[m];
         struct facet_local_touch *touch = &local->touches[local->n_touches];
         if (contact_geometry_touches(mesh, group[k].feature, centre, radius, &touch->at)) {
             const double overlap = radius - touch->at.distance;
@@ -283,12 +285,12 @@ static void hand_over(struct facet_local *local, struct facet_contact *group,
     local->n_ended = n_left;
 }
 
-void facet_local_search(struct facet_local *local, struct facet_contact *group, int n,
-                        const struct mesh *mesh, const struct periodic *periodic,
+void facet_local_search(struct facet_local *local, struct facet_contact *group, const int *near,
+                        int n, const struct mesh *mesh, const struct periodic *periodic,
                         struct vec3 centre, double radius)
 {
     reserve(local, n);
-    find_touches(local, group, n, mesh, centre, radius);
+    find_touches(local, group, near, n, mesh, centre, radius);
     if (local->n_touches > 1) {
         choose_standing(local, group, radius);
         blend(local, radius);

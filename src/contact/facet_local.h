@@ -47,11 +47,12 @@ static inline bool facet_local_stands(const struct facet_local *local, int t)
 }
 
 void facet_local_clear(struct facet_local *local);
-/* Searches a group: the n entries of a sphere with one body. Their history is handed over, also
+/* Searches a group, the entries of a sphere with one body, of which n are near: near[] ascends
+ * and holds every entry that touches or has history. Their history is handed over, also
  * to where the sphere comes in again past a periodic boundary; nothing else is changed.
  * Local. */
-void facet_local_search(struct facet_local *local, struct facet_contact *group, int n,
-                        const struct mesh *mesh, const struct periodic *periodic,
+void facet_local_search(struct facet_local *local, struct facet_contact *group, const int *near,
+                        int n, const struct mesh *mesh, const struct periodic *periodic,
                         struct vec3 centre, double radius);
 
 #endif
