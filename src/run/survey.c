@@ -9,6 +9,7 @@
 #include "base/report.h"
 #include "job/job.h"
 #include "model/body.h"
+#include "model/geometry.h"
 #include "model/rigid.h"
 #include "model/sphere.h"
 
@@ -125,15 +126,35 @@ static void warn_of_facets(const struct job_body *body, const struct mesh *mesh)
             mesh->first_duplicate + 1);
 }
 
+/* Part of a drawing's width: vertices nearer than this were probably meant to be one. */
+static const double MEANT_AS_ONE = 1e-5;
+
+/* Warns of holes; tries whether vertices that nearly meet are the reason. */
+static void warn_of_holes(const struct job_body *body, const struct mesh *mesh,
+                          const struct mesh_survey *survey)
+{
+    char name[NAME], place[PLACE], remedy[PLACE] = "";
+    struct mesh merged;
+    struct job_body other = *body;
+    const double scale = body->scale > 0.0 ? body->scale : 1.0;
+    other.merge = MEANT_AS_ONE * largest_side(survey) / scale;
+    geometry_build_mesh(&merged, &other);
+    const int n_left = mesh_survey(&merged).n_open;
+    mesh_clear(&merged);
+    if (n_left < survey->n_open && body->merge < other.merge)
+        snprintf(remedy, sizeof remedy, "; vertices nearly meet: merge: %.1g would leave %d",
+                 other.merge, n_left);
+    report_warn("%s: %d open edge%s, the first at %s: the surface has holes or a border%s",
+                name_of(body, name), survey->n_open, survey->n_open == 1 ? "" : "s",
+                place_of(mesh, survey->first_open, place), remedy);
+}
+
 static void warn_of_edges(const struct job_body *body, const struct mesh *mesh,
                           const struct mesh_survey *survey)
 {
     char name[NAME], place[PLACE];
     if (survey->n_open > 0)
-        report_warn("%s: %d open edge%s, the first at %s: the surface has holes or a border "
-                    "(vertices that should be one? merge: ...)",
-                    name_of(body, name), survey->n_open, survey->n_open == 1 ? "" : "s",
-                    place_of(mesh, survey->first_open, place));
+        warn_of_holes(body, mesh, survey);
     if (survey->n_shared > 0)
         report_warn("%s: %d edge%s of more than two facets, the first at %s",
                     name_of(body, name), survey->n_shared, survey->n_shared == 1 ? "" : "s",

@@ -87,6 +87,10 @@ warned()
     says "$2"
     result "$1"
 }
+sed -i '0,/vertex 300 0 0/s//vertex 300.0001 0 0/' wedge.stl
+warned "vertices that nearly meet" "body 'wedge', wedge.stl: 4 open edges, the first at "
+says "vertices nearly meet: merge: 0.004 would leave 0"
+result "and how to join them"
 warned "a border" "body 'plate', plate.msh: 4 open edges, the first at "
 sed -i 's/scale: 0.001, //' round.yaml
 sed -i 's/time: {end: 0.5/domain: {min: [-2000, -2000, -2000], max: [2000, 2000, 2000]}\ntime: {end: 0.5/' round.yaml
