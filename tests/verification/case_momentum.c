@@ -14,7 +14,7 @@
 
 enum { N = 20, STEPS = 20000 };
 
-static struct simulation *cluster(double friction, double restitution)
+static struct simulation *cluster(double friction, double restitution, const char *more)
 {
     uint64_t random = 7;
     char *list = array_string("");
@@ -42,11 +42,12 @@ static struct simulation *cluster(double friction, double restitution)
         "materials:\n  heavy: {density: 7850, young: 2.0e+9, poisson: 0.3}\n"
         "  light: {density: 2500, young: 5.0e+8, poisson: 0.2}\n"
         "contact:\n  pairs:\n"
-        "    - {between: [heavy, heavy], friction: %g, restitution: %g}\n"
-        "    - {between: [heavy, light], friction: %g, restitution: %g}\n"
-        "    - {between: [light, light], friction: %g, restitution: %g}\n"
+        "    - {between: [heavy, heavy], friction: %g, restitution: %g%s}\n"
+        "    - {between: [heavy, light], friction: %g, restitution: %g%s}\n"
+        "    - {between: [light, light], friction: %g, restitution: %g%s}\n"
         "spheres:\n%s",
-        friction, restitution, friction, restitution, friction, restitution, list);
+        friction, restitution, more, friction, restitution, more, friction, restitution, more,
+        list);
     free(list);
     return sim;
 }
@@ -75,9 +76,9 @@ static struct momenta momenta_of(const struct simulation *sim)
     return sum;
 }
 
-static void compare(double friction, double restitution)
+static void compare(const char *law, double friction, double restitution, const char *more)
 {
-    struct simulation *sim = cluster(friction, restitution);
+    struct simulation *sim = cluster(friction, restitution, more);
     const struct momenta before = momenta_of(sim);
     double linear = 0.0, angular = 0.0;
     char name[128];
@@ -91,15 +92,16 @@ static void compare(double friction, double restitution)
         angular = l > angular ? l : angular;
     }
     const struct momenta after = momenta_of(sim);
-    snprintf(name, sizeof name, "mu %g, e %g: momentum, largest change over the sum of sizes",
-             friction, restitution);
+    snprintf(name, sizeof name,
+             "%s, mu %g, e %g: momentum, largest change over the sum of sizes", law, friction,
+             restitution);
     verify_row(name, "", 0.0, linear, 2e-12, VERIFY_AT_MOST, why);
     snprintf(name, sizeof name,
-             "mu %g, e %g: angular momentum, largest change over the sum of sizes", friction,
-             restitution);
-    verify_row(name, "", 0.0, angular, 2e-12, VERIFY_AT_MOST, why);
-    snprintf(name, sizeof name, "mu %g, e %g: kinetic energy left, so that they did meet",
+             "%s, mu %g, e %g: angular momentum, largest change over the sum of sizes", law,
              friction, restitution);
+    verify_row(name, "", 0.0, angular, 2e-12, VERIFY_AT_MOST, why);
+    snprintf(name, sizeof name, "%s, mu %g, e %g: kinetic energy left, so that they did meet",
+             law, friction, restitution);
     verify_row(name, "", 0.9, after.kinetic / before.kinetic, 0.0, VERIFY_AT_MOST,
                "no answer: a guard of the two rows above");
     verify_scene_free(sim);
@@ -108,7 +110,17 @@ static void compare(double friction, double restitution)
 int main(int argc, char **argv)
 {
     verify_begin(argc, argv, "Momentum of twenty spheres by themselves", "Newton");
-    compare(0.5, 0.6);
-    compare(10.0, 0.9);
+    static const char *const linear = ", law: linear, stiffness: 1.0e+6";
+    compare("Hertz", 0.5, 0.6, "");
+    compare("Hertz", 10.0, 0.9, "");
+    compare("linear", 0.5, 0.6, linear);
+    compare("Hertz, rolling spring", 0.5, 0.6, ", rolling_friction: 0.2");
+    compare("Hertz, rolling of constant torque", 0.5, 0.6,
+            ", rolling_friction: 0.2, rolling: constant");
+    compare("Hertz, twisting", 0.5, 0.6, ", twisting_friction: 0.2");
+    compare("Hertz, static friction .9", 0.5, 0.6, ", static_friction: 0.9");
+    compare("linear, all of these", 0.5, 0.6,
+            ", law: linear, stiffness: 1.0e+6, rolling_friction: 0.2, twisting_friction: 0.2, "
+            "static_friction: 0.9");
     return verify_end();
 }
