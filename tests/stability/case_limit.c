@@ -27,7 +27,7 @@
 
 static const double RADIUS = 0.01;
 /* What `step: auto` takes of the real limit at most, as README.md says. */
-static const double AUTOMATIC_MOST = 0.7;
+static const double AUTOMATIC_MOST = 0.4;
 
 struct material {
     double friction, restitution;
