@@ -29,6 +29,10 @@ struct scene {
 int scene_read(struct scene *scene, const struct comm *comm, const char *path);
 void scene_clear(struct scene *scene);
 
+/* The name of a group, or of the insertion that is counted on from groups; NULL where the job
+ * knows none. */
+const char *scene_group(const struct scene *scene, int group);
+
 /* The newest checkpoint of a run's folder; NULL when there is none.  The caller frees it. */
 char *scene_newest(const char *run_folder);
 

@@ -80,17 +80,25 @@ static void print_census(const struct census *census)
         printf("  mass              %.6g kg\n", census->mass);
 }
 
-/* Groups of spheres as the job names them. */
+/* What a group is made of, as far as the job says. */
+static const char *material_of_group(const struct job *job, int group)
+{
+    if (group < job->n_spheres)
+        return job->materials[job->spheres[group].material].name;
+    const struct job_insertion *insertion = &job->insertions[group - job->n_spheres];
+    return insertion->n_mix > 0 ? "a mix" : job->materials[insertion->material].name;
+}
+
+/* Groups of spheres as the job names them, and insertions. */
 static void print_groups(const struct scene *scene)
 {
-    for (int g = 0; scene->has_job && g < scene->job.n_spheres; g++) {
+    for (int g = 0; scene_group(scene, g) != NULL; g++) {
         struct census census = census_start();
         for (int i = 0; i < scene->spheres.n_owned; i++)
             if (scene->spheres.group[i] == g)
                 count_sphere(&census, scene, i);
-        const int material = scene->job.spheres[g].material;
-        printf("  group %-11s %" PRId64 " of %s, %.6g kg\n", scene->job.spheres[g].name,
-               census.n, scene->job.materials[material].name, census.mass);
+        printf("  group %-11s %" PRId64 " of %s, %.6g kg\n", scene_group(scene, g), census.n,
+               material_of_group(&scene->job, g), census.mass);
     }
 }
 

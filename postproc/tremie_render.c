@@ -136,8 +136,8 @@ static int list_names(const struct scene *scene, enum colour_by by, int n_kinds,
         const char *name = NULL;
         if (by == BY_MATERIAL && scene->has_job && k < scene->job.n_materials)
             name = scene->job.materials[k].name;
-        else if (by == BY_GROUP && scene->has_job && k < scene->job.n_spheres)
-            name = scene->job.spheres[k].name;
+        else if (by == BY_GROUP)
+            name = scene_group(scene, k);
         (*names)[k] = name != NULL ? array_string(name) : array_format("%d", k);
     }
     return n_kinds;

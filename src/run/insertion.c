@@ -1,6 +1,6 @@
 /*
  * See insertion.h.  At an occasion the spheres that could be in the way of the regions are
- * hashed once (run/room.h); then rounds follow.  In a round each sphere that has no place yet
+ * gathered once (model/crowd.h); then rounds follow.  In a round each sphere that has no place yet
  * makes one attempt; a sphere that gets a place makes way for the next that is due.  Those
  * that used up their attempts keep their slot until the next occasion, so an insertion whose
  * region is full costs INSERTION_ATTEMPTS rounds and stops drawing.
@@ -50,7 +50,6 @@ void insertions_clear(struct insertions *insertions)
     }
     free(insertions->list);
     free(insertions->new);
-    room_clear(&insertions->room);
     *insertions = (struct insertions){0};
 }
 
@@ -172,9 +171,9 @@ static bool is_near(const struct region *region, struct vec3 x, double radius)
 
 /* Adds the sphere, and its images over periodic boundaries, where they may be in the way.  New
  * spheres lie wholly within the domain and cannot meet each other's images. */
-static void add_to_room(struct insertions *all, const bool *occasion,
-                        const struct spheres *spheres, int i, int n_shifts,
-                        double shifts[PERIODIC_IMAGES][3])
+static void add_to_crowd(struct insertions *all, const bool *occasion,
+                         const struct spheres *spheres, int i, int n_shifts,
+                         double shifts[PERIODIC_IMAGES][3])
 {
     const struct vec3 place = sphere_place(spheres, i);
     const double radius = sphere_radius(spheres, i);
@@ -185,29 +184,32 @@ static void add_to_room(struct insertions *all, const bool *occasion,
         for (int k = 0; k < all->n && !near; k++)
             near = occasion[k] && is_near(&all->list[k].region, x, radius);
         if (near)
-            room_add(&all->room, x, radius);
+            crowd_add(&all->crowd, x, radius);
     }
 }
 
 /* The owned spheres that could be in the way of the insertions that have an occasion. */
-static void fill_room(struct simulation *sim, const bool *occasion,
-                      const unsigned char *removed)
+static void fill_crowd(struct simulation *sim, const bool *occasion,
+                       const unsigned char *removed)
 {
     struct insertions *all = &sim->insertions;
     const struct spheres *spheres = &sim->spheres;
-    double radius_max = 0.0, shifts[PERIODIC_IMAGES][3];
+    double shifts[PERIODIC_IMAGES][3];
     const int n_shifts = periodic_shifts(&spheres->periodic, shifts);
     all->radius_max = 0.0;
-    for (int k = 0; k < all->n; k++) {
-        const double most = all->list[k].sizes.max;
-        radius_max = occasion[k] && most > radius_max ? most : radius_max;
-    }
-    room_begin(&all->room, 2.0 * radius_max);
     for (int i = 0; i < spheres->n_owned; i++) {
         const double radius = sphere_radius(spheres, i);
         all->radius_max = radius > all->radius_max ? radius : all->radius_max;
+    }
+    double greatest = all->radius_max;
+    for (int k = 0; k < all->n; k++) {
+        const double most = all->list[k].sizes.max;
+        greatest = occasion[k] && most > greatest ? most : greatest;
+    }
+    crowd_init(&all->crowd, greatest);
+    for (int i = 0; i < spheres->n_owned; i++) {
         if (removed == NULL || !removed[i])
-            add_to_room(all, occasion, spheres, i, n_shifts, shifts);
+            add_to_crowd(all, occasion, spheres, i, n_shifts, shifts);
     }
     comm_max(sim->comm, &all->radius_max, 1);
 }
@@ -232,7 +234,7 @@ static bool draw_place(const struct simulation *sim, struct insertion *insertion
 /* Is something of this rank in the way?  Bodies are everywhere: ranks take turns with them. */
 static bool is_blocked(struct simulation *sim, struct vec3 place, double radius, int64_t turn)
 {
-    if (!room_is_free(&sim->insertions.room, place, radius))
+    if (!crowd_has_room(&sim->insertions.crowd, place, radius, 0.0))
         return true;
     return turn % sim->comm->n_ranks == sim->comm->rank &&
            facet_contacts_meet(&sim->facets, &sim->bodies, place, radius);
@@ -282,19 +284,23 @@ static void take_in(struct simulation *sim, struct insertion *insertion,
                       mass_of(sim, sphere));
 }
 
+static bool overlap(const struct packing_sphere *a, const struct packing_sphere *b)
+{
+    const struct vec3 apart = vec3_sub(b->position, a->position);
+    const double reach = a->radius + b->radius;
+    return vec3_dot(apart, apart) < reach * reach;
+}
+
 /* Accepts in order what nothing blocks and what overlaps none that this round has accepted. */
 static void accept(struct simulation *sim, struct insertion *insertion, struct round *round)
 {
-    struct room *room = &sim->insertions.room;
     bool placed[INSERTION_WAITING] = {false};
     int n = 0;
     for (int a = 0; a < round->n; a++) {
         const struct packing_sphere *sphere = &round->spheres[a];
         bool free = !round->blocked[a];
         for (int b = 0; b < a && free; b++)
-            free = !placed[round->slot[b]] ||
-                   !room_overlap(round->spheres[b].position, round->spheres[b].radius,
-                                 sphere->position, sphere->radius);
+            free = !placed[round->slot[b]] || !overlap(&round->spheres[b], sphere);
         if (!free)
             continue;
         placed[round->slot[a]] = true;
@@ -302,7 +308,8 @@ static void accept(struct simulation *sim, struct insertion *insertion, struct r
     }
     for (int a = 0; a < round->n; a++)
         if (placed[round->slot[a]])
-            room_add(room, round->spheres[a].position, round->spheres[a].radius);
+            crowd_add(&sim->insertions.crowd, round->spheres[a].position,
+                      round->spheres[a].radius);
     for (int w = 0; w < insertion->n_waiting; w++)
         if (!placed[w])
             insertion->waiting[n++] = insertion->waiting[w];
@@ -375,11 +382,13 @@ int insertions_try(struct simulation *sim, const unsigned char *removed)
     }
     if (any) {
         facet_contacts_refit(&sim->facets, &sim->bodies);
-        fill_room(sim, occasion, removed);
+        fill_crowd(sim, occasion, removed);
     }
     for (int k = 0; k < all->n; k++)
         if (occasion[k])
             insert(sim, &all->list[k]);
+    if (any)
+        crowd_clear(&all->crowd);
     free(occasion);
     return all->n_new;
 }

@@ -16,10 +16,10 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "model/crowd.h"
 #include "model/packing.h"
 #include "model/region.h"
 #include "model/sizes.h"
-#include "run/room.h"
 #include "run/tally.h"
 
 struct bodies;
@@ -62,7 +62,7 @@ struct insertion_new {
 struct insertions {
     int n;
     struct insertion *list;
-    struct room room;
+    struct crowd crowd;      /* who could be in the way at this step */
     int n_new, new_capacity; /* to be placed by insertions_place() */
     struct insertion_new *new;
     double radius_max; /* of all spheres in the run, where there are new ones [m] */
