@@ -57,9 +57,10 @@ static void case_4(void)
         const double rebound =
             atan((out - spin * oxide.radius) / result.velocity[0].z) / DEGREE;
         const bool slides = tan(angle) > 3.5 * mu * (1.0 + e);
-        char name[3][96];
-        static const char *const what[] = {"tangential restitution", "angular velocity after",
-                                           "rebound angle of the contact patch"};
+        char name[3][128];
+        static const char *const what[] = {
+            "tangential restitution", "angular velocity after",
+            "rebound angle of the contact patch, a small difference of the two above"};
         for (int q = 0; q < 3; q++)
             snprintf(name[q], sizeof name[q], "%g degrees from the normal: %s", table[k][0],
                      what[q]);
@@ -73,6 +74,8 @@ static void case_4(void)
             verify_row(name[2], "deg", expected[2], rebound, 6e-4, VERIFY_ABSOLUTE,
                        "1e-5 radians");
         } else {
+            /* The published angle is not met within 3 % of itself but at 30 degrees: that small a
+             * difference of two large speeds is not what 3 % in each determines. */
             const double patch =
                 table[k][1] * v_t + table[k][2] * oxide.radius; /* both, by size [m/s] */
             const double differ = 0.03 * patch / (e * v_n) / DEGREE;
@@ -82,7 +85,7 @@ static void case_4(void)
             verify_row(name[1], "rad/s", table[k][2], spin, 0.03, VERIFY_RELATIVE,
                        "published laws differ by this");
             verify_row(name[2], "deg", table[k][3], rebound, differ, VERIFY_ABSOLUTE,
-                       "3 % in both of the rows above");
+                       "3 % in both of the rows above; of the angle itself it is more");
         }
     }
 }
