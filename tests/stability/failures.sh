@@ -192,6 +192,14 @@ job stays 1.0e-5 1100 -9.81 "$(sphere ball 0.001 0 0 0 0 0 9)" "" \
     's/leavers: ignore/leavers: stop, min: [-0.1, -0.1, -0.1], max: [0.1, 0.1, 0.1]/'
 fine stays "ends a millimetre before"
 
+# ------------------------------------------------------------------ beyond what sums hold
+# A wrong unit: kilometres for millimetres.
+job huge 1.0e-2 100 -9.81 "$(sphere moon 100000 0 0 1000 0 0 0)" ""
+fails huge "exact sums, at samples" "a force or energy at step" 0 1 "check the units"
+alike huge
+job large 1.0e-2 100 -9.81 "$(sphere hill 10 0 0 1000 0 0 0)" ""
+fine large "a ten-thousandth of the radius"
+
 # ------------------------------------------------------------------ faster than the buffer
 # Costs searches, never a contact: the same bits as with all pairs and no buffer.
 job fast 1.0e-5 3000 0 "$(sphere shot 0.01 -0.3 0.003 0 20 0 0; sphere a 0.01 0 0 0 0 0 0; sphere b 0.01 0.03 0.004 0 0 0 0)" "  - $floor" \
