@@ -87,13 +87,16 @@ static struct split split_facet(const struct simulation *sim,
 {
     const struct spheres *spheres = &sim->spheres;
     const int i = contact->sphere, wall = sim->bodies.list[contact->body].material;
-    const double w = sphere_inverse_mass(spheres, i);
+    const struct rigid *rigid = sim->bodies.list[contact->body].rigid;
+    const double *x = sphere_position(spheres, i), w = sphere_inverse_mass(spheres, i);
+    const double yield =
+        rigid != NULL ? rigid_yield_most(rigid, (struct vec3){x[0], x[1], x[2]}) : 0.0;
     struct split split = {
         critical_step_contact(
             &sim->materials.pairs[spheres->material[i] * sim->materials.n + wall],
-            contact->history[CONTACT_RADIUS_LANE], 1.0 / w),
+            contact->history[CONTACT_RADIUS_LANE], 1.0 / (w + yield)),
         {critical_step_side(w, sphere_curvature(spheres, i), 0.0)}};
-    if (sim->bodies.list[contact->body].rigid != NULL && sim->watch.loads != NULL)
+    if (rigid != NULL && sim->watch.loads != NULL)
         split.side[0].share = yielding_share(&split.contact, split.side[0].share,
                                              &sim->watch.loads[contact->body]);
     return split;
@@ -653,13 +656,7 @@ static void explain_overlap(const struct simulation *sim, const char *when,
                             const struct deepest *deepest)
 {
     const double limit = sim->job->watch.overlap;
-    const char *appeared = find_appeared(sim);
-    if (sim->step > 1 && appeared != NULL)
-        report_error("body '%s' appeared where spheres are, at %s: %s overlap by %.3g of a "
-                     "radius, more than watch.overlap = %.3g; clear its place first, or let it "
-                     "come earlier",
-                     appeared, when, deepest->what, deepest->overlap, limit);
-    else if (sim->step <= 1)
+    if (sim->step <= 1)
         report_error("overlap at the start: %s overlap by %.3g of a radius, more than "
                      "watch.overlap = %.3g; place them farther apart",
                      deepest->what, deepest->overlap, limit);
@@ -753,11 +750,17 @@ void watch_explain(const struct watch *watch, const struct simulation *sim)
         watch->failure == WATCH_OVERLAP ||
         ((watch->failure == WATCH_NOT_A_NUMBER || watch->failure == WATCH_SUMS) &&
          deepest.overlap > sim->job->watch.overlap);
+    const char *appeared = find_appeared(sim);
     const bool starts_deep = too_deep && sim->step <= 1;
     const bool by_contacts = watch->failure != WATCH_FAR && watch->failure != WATCH_LEAVER &&
                              watch->failure != WATCH_FULL;
     /* Whatever rang: beyond the critical step the step is to blame. */
-    if (watch->failure == WATCH_STEP || (sim->dt > critical && by_contacts && !starts_deep))
+    if (appeared != NULL && deepest.overlap > 0.0 && watch->failure != WATCH_LEAVER)
+        report_error("body '%s' appeared where spheres are, at %s: %s overlap by %.3g of a "
+                     "radius; clear its place first, or let it come at another time",
+                     appeared, when, deepest.what, deepest.overlap);
+    else if (watch->failure == WATCH_STEP ||
+             (sim->dt > critical && by_contacts && !starts_deep))
         explain_step(sim, when, critical, &deepest, own.what);
     else if (too_deep)
         explain_overlap(sim, when, &deepest);

@@ -115,8 +115,8 @@ static void impact(double e)
         "%sgravity: [0, 0, 0]\noutput: {series: {every: 1.0e+3}}\n"
         "contact: {pairs: [{between: [ore, ore], friction: 0, restitution: %g}]}\n"
         "spheres:\n  - {name: ball, material: ore, radius: 0.01, velocity: [0, 0, -1], "
-        "packing: {kind: lattice, count: 1, spacing: 0.02, corner: [-0.01, -0.01, 0.001], size: [0.02, "
-        "0.02]}}\n"
+        "packing: {kind: lattice, count: 1, spacing: 0.02, corner: [-0.01, -0.01, 0.001], "
+        "size: [0.02, 0.02]}}\n"
         "bodies:\n  - {name: plate, material: ore, geometry: {kind: plane, point: [0, 0, 0], "
         "normal: [0, 0, 1], extent: 0.2}, free: {mass: 0.010471975511965978, inertia: [1, 1, "
         "1.5, 0, 0, 0], centre: [0, 0, 0]}}\n",
