@@ -17,6 +17,8 @@
 
 enum { LARGEST = 1 << 30 }; /* bytes */
 
+static const double FAR = 1e6; /* as in job files [m] */
+
 bool surface_file_has(const struct job_body *body)
 {
     return body->geometry == JOB_GEOMETRY_STL || body->geometry == JOB_GEOMETRY_GMSH;
@@ -52,6 +54,21 @@ static char *read_bytes(const char *path, char **bytes, size_t *n)
     return why;
 }
 
+/* The first vertex that is farther out than lengths in a job may be. */
+static char *find_far(const struct job_body *body, const struct surface *surface)
+{
+    const double scale = body->scale > 0.0 ? body->scale : 1.0, most = FAR / scale;
+    for (int v = 0; v < surface->n_vertices; v++) {
+        const struct vec3 x = surface->vertices[v];
+        if (!(x.x >= -most && x.x <= most && x.y >= -most && x.y <= most && x.z >= -most &&
+              x.z <= most))
+            return array_format("%s: vertex %d at (%.3g, %.3g, %.3g) with scale %.3g; "
+                                "coordinates within %.0e m are expected",
+                                body->file, v + 1, x.x, x.y, x.z, scale, FAR);
+    }
+    return NULL;
+}
+
 char *surface_file_read(struct job_body *body)
 {
     char *bytes;
@@ -66,7 +83,11 @@ char *surface_file_read(struct job_body *body)
     const bool fine = body->geometry == JOB_GEOMETRY_STL
                           ? stl_read(&surface, body->file, bytes, n, &why)
                           : gmsh_read(&surface, body->file, bytes, n, body->group, &why);
-    if (fine) {
+    if (fine)
+        why = find_far(body, &surface);
+    if (why != NULL) {
+        surface_clear(&surface);
+    } else {
         crc32_init(&crc);
         body->sum = (int64_t)crc32_of(&crc, bytes, n);
         free(body->vertices);

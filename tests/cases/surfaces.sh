@@ -68,6 +68,8 @@ refused "an STL file that ends early" "$folder/wedge.stl:23:7: 'norma' is not wh
 refused "an empty STL file" "$folder/wedge.stl: 0 bytes, which are no STL file;"
 printf 'solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 2 0 0\nendloop\nendfacet\nendsolid\n' > wedge.stl
 refused "an STL file without area" "$folder/wedge.stl: body 'wedge', wedge.stl: none of 1 facets has an area; a surface is expected"
+printf 'solid\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1e200 0 0\nvertex 0 2 0\nendloop\nendfacet\nendsolid\n' > wedge.stl
+refused "a vertex far out" "$folder/wedge.stl: vertex 2 at (1e+200, 0, 0) with scale 0.001; coordinates within 1e+06 m are expected"
 rm wedge.stl && mkdir wedge.stl
 refused "a folder" "bodies.3.geometry.file is '$folder/wedge.stl', which is a folder; a file with a surface is expected"
 rmdir wedge.stl
