@@ -120,8 +120,10 @@ static double foresee_speed(const struct job *job, const struct bodies *bodies,
 static void add_limits(struct limits *limits, const struct job *job,
                        const struct materials *materials, const struct packing *packing)
 {
+    if (packing->n == 0)
+        return; /* a run that continues none has no group either */
     const bool alike = packing->rows == NULL && !packing->group->sizes.given;
-    const int64_t n = alike && packing->n > 0 ? 1 : packing->n;
+    const int64_t n = alike ? 1 : packing->n;
     for (int64_t k = 0; k < n; k++) {
         const struct packing_sphere sphere = packing_get(packing, k);
         limits_add(limits, job, materials, &sphere);
