@@ -5,9 +5,9 @@
  * command again resumes from the newest good checkpoint.  Exit statuses are those of
  * base/report.h.
  */
+#include <limits.h>
 #include <mpi.h>
 #include <stdio.h>
-#include <limits.h>
 #include <stdlib.h>
 #include <string.h>
 #include <unistd.h>
