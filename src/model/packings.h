@@ -25,8 +25,9 @@ struct packings {
     struct packing *groups;
 };
 
-/* Opens all groups; `before` are spheres that are there already.  Returns false, with what is wrong listed, where one cannot be opened or
- * where there is no room; then there is nothing to close. */
+/* Opens all groups; `before` are spheres that are there already.  Returns false, with what is
+ * wrong listed, where one cannot be opened or where there is no room; then there is nothing to
+ * close. */
 bool packings_open(struct packings *packings, const struct job *job,
                    const struct bodies *bodies, const struct packing *before,
                    packings_reader *reader, struct mistakes *mistakes);

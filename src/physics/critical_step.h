@@ -37,7 +37,7 @@ struct critical_step_contact {
 struct critical_step_contact critical_step_contact(const struct material_pair *pair,
                                                    double contact_radius, double mass);
 
-/* What of a contact falls to the first sphere; curvatures in 1/m, the partner's 0 for a wall. */
+/* What of a contact falls to the first sphere; curvatures in 1/m, of a wall 0. */
 struct critical_step_side {
     double share; /* of the contact, over the sphere's mass [1/kg]  (6.4) */
     double arm;   /* R* over R, squared [-] */
@@ -71,8 +71,8 @@ double critical_step_load(const struct critical_step_matrix *matrix, double dt);
 /* The step at which that is 1 [s]. */
 double critical_step_of_matrix(const struct critical_step_matrix *matrix);
 
-/* What n equal contacts on all sides are to a sphere among its like: add one that is deeper with
- * critical_step_add().  (6.7) */
+/* What n equal contacts on all sides are to a sphere among its like: add one that is deeper
+ * with critical_step_add().  (6.7) */
 struct critical_step_sums critical_step_amid(const struct critical_step_contact *contact,
                                              double inverse_mass, int n);
 

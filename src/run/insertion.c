@@ -1,7 +1,7 @@
 /*
  * See insertion.h.  At an occasion the spheres that could be in the way of the regions are
- * gathered once (model/crowd.h); then rounds follow.  In a round each sphere that has no place yet
- * makes one attempt; a sphere that gets a place makes way for the next that is due.  Those
+ * gathered once (model/crowd.h); then rounds follow.  In a round each sphere that has no place
+ * yet makes one attempt; a sphere that gets a place makes way for the next that is due.  Those
  * that used up their attempts keep their slot until the next occasion, so an insertion whose
  * region is full costs INSERTION_ATTEMPTS rounds and stops drawing.
  */

@@ -2,9 +2,10 @@
  * What a scene allows of the time step, known before it runs: the Rayleigh step, the step that
  * the springs of the expected contacts allow, and how many steps an impact lasts.
  *
- * Contacts are not there yet, so they are expected: a sphere amid eight partners of its size, each
- * pressed on it as by a column of spheres as high as the domain, that another strikes at the
- * highest speed that can be foreseen.  What does happen is watched in the run (run/watch.h).
+ * Contacts are not there yet, so they are expected: a sphere amid eight partners of its size,
+ * each pressed on it as by a column of spheres as high as the domain, that another strikes at
+ * the highest speed that can be foreseen.  What does happen is watched in the run
+ * (run/watch.h).
  */
 #ifndef TREMIE_RUN_LIMITS_H
 #define TREMIE_RUN_LIMITS_H

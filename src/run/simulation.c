@@ -140,7 +140,8 @@ void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
     sections_begin(&sim->sections, spheres, i);
 }
 
-/* The groups' spheres, random ones clear of those there `before`: of each, this rank begins with a slice. */
+/* The groups' spheres, random ones clear of those there `before`: of each, this rank begins
+ * with a slice. */
 static void add_groups(struct simulation *sim, const struct packing *before)
 {
     const int64_t rank = sim->comm->rank, n_ranks = sim->comm->n_ranks;
