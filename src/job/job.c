@@ -20,7 +20,7 @@
 #include "job/schema.h"
 #include "job/yaml_tree.h"
 
-enum { MAX_LIBRARIES = 16, KEY_LENGTH = 64, LAST_INDEX = 100000 };
+enum { MAX_CLASSES = 32, MAX_LIBRARIES = 16, KEY_LENGTH = 64, LAST_INDEX = 100000 };
 
 /* ------------------------------------------------------------------------------- overrides */
 
@@ -331,25 +331,37 @@ static int compare_doubles(const void *a, const void *b)
     return (*p > *q) - (*p < *q);
 }
 
-/* The radii half way between those that groups and insertions of one radius have;
- * *n_classes of them. */
+/* Radii that groups and insertions have, as far as the job lists them. */
+struct radii {
+    int n, capacity;
+    double *list;
+};
+
+static void radii_add(struct radii *radii, double radius, const struct job_sizes *sizes)
+{
+    ARRAY_GROW(radii->list, radii->n + sizes->n + 1, radii->capacity);
+    if (radius > 0.0)
+        radii->list[radii->n++] = radius;
+    for (int k = 0; sizes->kind == JOB_SIZES_LIST && k < sizes->n; k++)
+        radii->list[radii->n++] = sizes->list[k].radius;
+}
+
+/* The radii half way between those; *n_classes of them, none where there are too many. */
 static double *classes_between(const struct job *job, int *n_classes)
 {
-    double *radii =
-        array_allocate((size_t)job->n_spheres + (size_t)job->n_insertions, sizeof *radii);
+    struct radii radii = {0};
     int n = 0;
-    *n_classes = 0;
     for (int g = 0; g < job->n_spheres; g++)
-        if (job->spheres[g].radius > 0.0)
-            radii[n++] = job->spheres[g].radius;
+        radii_add(&radii, job->spheres[g].radius, &job->spheres[g].sizes);
     for (int g = 0; g < job->n_insertions; g++)
-        if (job->insertions[g].radius > 0.0)
-            radii[n++] = job->insertions[g].radius;
-    qsort(radii, (size_t)n, sizeof *radii, compare_doubles);
-    for (int k = 1; k < n; k++)
-        if (radii[k - 1] < radii[k])
-            radii[(*n_classes)++] = 0.5 * (radii[k - 1] + radii[k]);
-    return radii;
+        radii_add(&radii, job->insertions[g].radius, &job->insertions[g].sizes);
+    if (radii.n > 0)
+        qsort(radii.list, (size_t)radii.n, sizeof *radii.list, compare_doubles);
+    for (int k = 1; k < radii.n; k++)
+        if (radii.list[k - 1] < radii.list[k])
+            radii.list[n++] = 0.5 * (radii.list[k - 1] + radii.list[k]);
+    *n_classes = n < MAX_CLASSES ? n : 0;
+    return radii.list;
 }
 
 /* Gives size classes to the sections that ask for them and name none. */

@@ -615,7 +615,7 @@ static const struct schema_key section_keys[] = {
      .standard = "[]", .choices = splits, AT(struct job_section, by)},
     {"classes", SCHEMA_NUMBERS,
      "radii between the size classes, ascending; with `by: size` and none given, half way "
-     "between the radii that groups and insertions of one radius have",
+     "between the radii that groups and insertions name (if these make at most 32 classes)",
      .unit = "m", ABOVE_TO(0.0, FAR), GIVEN(struct job_section, classes),
      LIST_AT(struct job_section, classes, n_classes)},
     END};

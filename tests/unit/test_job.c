@@ -422,7 +422,19 @@ static const char everything[] =
     "  - {name: d, material: ore, geometry: {kind: mesh, vertices: [[0, 0, 0], [1, 0, 0], [1, "
     "1, 0],"
     " [0, 0.1, 1e-17]], facets: [[0, 1, 2], [0, 1, 2, 3]]}}\n"
-    "sections: [{name: s, point: [0, 0, 0.7], normal: [1, 1, 0]}]\n"
+    "sections: [{name: s, point: [0, 0, 0.7], normal: [1, 1, 0]},"
+    " {name: t, kind: disc, point: [0, 0, 0.7], normal: [1, 1, 0], radius: 0.1, by: [size]},"
+    " {name: u, kind: rectangle, point: [0, 0, 0.7], normal: [1, 1, 0], across: [0, 0, 3],"
+    " size: [1, 2], by: [material, size], classes: [0.1, 0.30000000000000004]}]\n"
+    "insert:\n"
+    "  - {name: feed, mix: [{material: ore, share: 0.1}], radius: 1 cm, velocity: [1, 0, 0],"
+    " region: {kind: cylinder, from: [0, 0, 0], to: [0, 0, 1], radius: 3}, rate: {mass: 2},"
+    " start: 0.1, until: {mass: 100, time: 1}, every: 10, when_full: stop, by: material}\n"
+    "  - {name: dust, material: ore, sizes: {kind: list, by: mass, radii: [{radius: 1 mm, "
+    "share: 1}, {radius: 3 mm, share: 2}]}, region: {kind: inside, body: b}, rate: {number: "
+    "5}, until: {count: 3}}\n"
+    "remove: [{name: out, region: {kind: box, min: [0, 0, 0], max: [1, 1, 1]}, stop: 2}]\n"
+    "contents: [{name: in, region: {kind: sphere, centre: [0, 0, 1], radius: 2}}]\n"
     "domain: {min: [-1, -1, -1], max: [9, 9, 9], leavers: remove}\n"
     "decomposition: {buffer: 1 cm, weights: candidates, grid: [2, 1, 3]}\n"
     "testing: {search: all-pairs, search_every: 7}\n";
@@ -434,7 +446,21 @@ TEST(what_is_written_reads_back_equal)
     EXPECT(job_from(everything, 0, NULL));
     EXPECT(job.damping == 1e-300 && job.decomposition.fixed[2] == 3 &&
            job.force.search_every == 7);
+    EXPECT(job.n_insertions == 2 && job.insertions[0].until_mass == 100.0);
+    EXPECT(job.insertions[1].until_count == 3 && job.insertions[1].sizes.n == 2);
     EXPECT(is_stable());
+}
+
+TEST(size_classes_lie_between_the_radii_that_are_named)
+{
+    EXPECT(job_from(everything, 0, NULL));
+    const struct job_section *auto_classes = &job.sections[1];
+    /* 1 mm, 3 mm, 1 cm and 33 mm */
+    EXPECT(job.sections[0].n_classes == 0 && auto_classes->n_classes == 3);
+    EXPECT_NEAR(auto_classes->classes[0], 0.002, 1e-15);
+    EXPECT_NEAR(auto_classes->classes[1], 0.0065, 1e-15);
+    EXPECT_NEAR(auto_classes->classes[2], 0.0215, 1e-15);
+    EXPECT(job.sections[2].n_classes == 2 && job.sections[2].classes[1] == 0.1 + 0.2);
 }
 
 TEST(jobs_and_library_of_the_project)
