@@ -153,7 +153,7 @@ static void warn_of_edges(const struct job_body *body, const struct mesh *mesh,
                           const struct mesh_survey *survey)
 {
     char name[NAME], place[PLACE];
-    if (survey->n_open > 0)
+    if (survey->n_open > 0 && body->file != NULL) /* who lists facets knows of borders */
         warn_of_holes(body, mesh, survey);
     if (survey->n_shared > 0)
         report_warn("%s: %d edge%s of more than two facets, the first at %s",
