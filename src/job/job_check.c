@@ -282,7 +282,7 @@ static void sizes_check(const struct check *check, const char *path,
         mistake(check, inner, "is not above min; a greater radius is expected");
     const double share = sizes->deviation / sizes->mean;
     const double variance =
-        elementary_log(1.0 + share * share); /* of the logarithm    (THEORY.md: S.3) */
+        elementary_log(1.0 + share * share); /* of the logarithm    (11.2) */
     const double wide = DEVIATIONS * sqrt(variance);
     const bool normal = sizes->kind == JOB_SIZES_NORMAL;
     const double low = normal ? sizes->mean - DEVIATIONS * sizes->deviation

@@ -18,6 +18,7 @@
 #include "job/job.h"
 #include "model/body.h"
 #include "model/crowd.h"
+#include "model/periodic.h"
 #include "model/region.h"
 
 enum { SPHERES_MOST = 50000000 };
@@ -28,6 +29,8 @@ struct builder {
     const struct job *job;
     const struct bodies *bodies;
     struct crowd crowd;
+    struct periodic periodic;
+    double radius, gap;               /* the greatest of all [m] */
     struct region_surface **surfaces; /* of bodies; NULL where there is nothing to avoid */
 };
 
@@ -118,6 +121,31 @@ static bool is_clear_of_bodies(const struct builder *builder, const struct job_s
     return true;
 }
 
+/* Could a sphere here come near one that is in the domain? */
+static bool is_near_domain(const struct builder *builder, struct vec3 x, double reach)
+{
+    const double at[3] = {x.x, x.y, x.z};
+    const struct periodic *p = &builder->periodic;
+    for (int c = 0; c < 3; c++)
+        if (p->along[c] && !(at[c] >= p->low[c] - reach && at[c] <= p->high[c] + reach))
+            return false;
+    return true;
+}
+
+/* A sphere stands in the way where it is, and where it appears across periodic boundaries. */
+static void enter(struct builder *builder, struct vec3 x, double radius, double gap)
+{
+    double shifts[PERIODIC_IMAGES][3];
+    const double reach = radius + builder->radius + gap;
+    const int n = periodic_shifts(&builder->periodic, shifts);
+    for (int s = 0; s < n; s++) {
+        const struct vec3 shift = {shifts[s][0], shifts[s][1], shifts[s][2]};
+        const struct vec3 image = vec3_add(x, shift);
+        if (s == 0 || is_near_domain(builder, image, reach))
+            crowd_add(&builder->crowd, image, radius);
+    }
+}
+
 /* Finds a place for a sphere and enters it. */
 static bool place_sphere(struct builder *builder, const struct region *region,
                          const struct job_spheres *group, struct packing_sphere *sphere,
@@ -134,7 +162,7 @@ static bool place_sphere(struct builder *builder, const struct region *region,
             region_contains(region, x, sphere->radius) &&
             is_clear_of_bodies(builder, group, x, sphere->radius + group->gap)) {
             sphere->position = x;
-            crowd_add(&builder->crowd, x, sphere->radius);
+            enter(builder, x, sphere->radius, group->gap);
             return true;
         }
     }
@@ -225,10 +253,13 @@ static void builder_init(struct builder *builder, const struct packings *packing
     for (int g = 0; g < packings->n; g++) {
         const double most = greatest_radius(&packings->groups[g]);
         radius = most > radius ? most : radius;
+        builder->gap = job->spheres[g].gap > builder->gap ? job->spheres[g].gap : builder->gap;
         avoid = avoid || (is_random(&packings->groups[g]) && job->spheres[g].avoid_bodies);
     }
     for (int b = 0; avoid && b < bodies->n; b++)
         builder->surfaces[b] = region_surface_build(&bodies->list[b].mesh);
+    builder->radius = radius;
+    periodic_init(&builder->periodic, job);
     crowd_init(&builder->crowd, radius);
 }
 
@@ -244,7 +275,7 @@ static void add_group(struct builder *builder, const struct packing *packing)
 {
     for (int64_t k = 0; k < packing->n; k++) {
         const struct packing_sphere sphere = packing_get(packing, k);
-        crowd_add(&builder->crowd, sphere.position, sphere.radius);
+        enter(builder, sphere.position, sphere.radius, builder->gap);
     }
 }
 

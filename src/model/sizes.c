@@ -39,7 +39,7 @@ static double exponent(const struct curve *curve, double radius)
     return 0.5 * z * z;
 }
 
-/* The density by number, to some scale.                                    (S.1), (S.2) */
+/* The density by number, to some scale.                                    (11.1), (11.2) */
 static double density(const struct curve *curve, double radius)
 {
     const double r = radius / curve->unit;
@@ -136,7 +136,7 @@ static void build_curve(struct sizes *sizes, struct curve *curve, double least, 
     add_cells(sizes, curve, low, high, CELLS);
 }
 
-/* A logarithm's mean and deviation from those of the radius itself.               (S.3) */
+/* A logarithm's mean and deviation from those of the radius itself.               (11.2) */
 static struct curve lognormal(const struct job_sizes *asked, bool by_mass)
 {
     const double spread = asked->deviation / asked->mean;
@@ -223,7 +223,7 @@ void sizes_clear(struct sizes *sizes)
     *sizes = (struct sizes){0.0, 0.0, 0.0, 0, NULL};
 }
 
-/* Where in its cell a share of it lies: the root of a quadratic.                  (S.4) */
+/* Where in its cell a share of it lies: the root of a quadratic.                  (11.3) */
 static double within(const struct sizes_cell *cell, double share)
 {
     const double p = cell->low, q = cell->high;
