@@ -513,7 +513,7 @@ static void end_group(const struct step *step, int begin, int end)
             continue;
         const struct mesh *mesh = &step->bodies->list[contact->body].mesh;
         const struct contact_geometry at = contact_geometry_closest(
-            mesh, contact->feature, vec3_of(sphere_position(step->spheres, contact->sphere)));
+            mesh, contact->feature, sphere_place(step->spheres, contact->sphere));
         add_contact(step, k, &at, 0.0);
     }
 }
@@ -659,7 +659,7 @@ static double held_energy(const struct spheres *spheres, const struct body *body
 {
     const double none[CONTACT_LANES] = {0.0};
     const int i = contact->sphere;
-    const struct vec3 centre = vec3_of(sphere_position(spheres, i));
+    const struct vec3 centre = sphere_place(spheres, i);
     const struct vec3 drift =
         vec3_sub(vec3_of(sphere_velocity(spheres, i)), wall_velocity(body, centre));
     const struct contact_geometry at = contact_geometry_closest(

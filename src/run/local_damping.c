@@ -34,12 +34,11 @@ void local_damping_clear(struct local_damping *damping)
 }
 
 /* Of all regions that hold the sphere [1/s]. */
-static double damping_at(const struct simulation *sim, const double *x)
+static double damping_at(const struct simulation *sim, struct vec3 place)
 {
     double sum = 0.0;
     for (int r = 0; r < sim->local_damping.n; r++)
-        if (region_contains(&sim->local_damping.regions[r], (struct vec3){x[0], x[1], x[2]},
-                            0.0))
+        if (region_contains(&sim->local_damping.regions[r], place, 0.0))
             sum += sim->job->damping_regions[r].damping;
     return sum;
 }
@@ -92,7 +91,7 @@ static void damp_sphere(struct simulation *sim, int i, double damping)
 void local_damping_apply(struct simulation *sim)
 {
     for (int i = 0; sim->local_damping.n > 0 && i < sim->spheres.n_owned; i++) {
-        const double damping = damping_at(sim, sphere_position(&sim->spheres, i));
+        const double damping = damping_at(sim, sphere_place(&sim->spheres, i));
         if (damping > 0.0)
             damp_sphere(sim, i, damping);
     }

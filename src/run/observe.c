@@ -521,11 +521,11 @@ void observe_gravity(struct simulation *sim)
     if (!sim->job->energy_ledger || !(vec3_norm(dg) > 0.0))
         return;
     for (int i = 0; i < sim->spheres.n_owned; i++) {
-        const double *x = sphere_position(&sim->spheres, i),
-                     *v = sphere_velocity(&sim->spheres, i);
+        const struct vec3 x = sphere_place(&sim->spheres, i);
+        const double *v = sphere_velocity(&sim->spheres, i);
         const double half = 0.5 * sim->dt, mass = 1.0 / sphere_inverse_mass(&sim->spheres, i);
-        const double rise = dg.x * (x[0] - half * v[0]) + dg.y * (x[1] - half * v[1]) +
-                            dg.z * (x[2] - half * v[2]);
+        const double rise = dg.x * (x.x - half * v[0]) + dg.y * (x.y - half * v[1]) +
+                            dg.z * (x.z - half * v[2]);
         exact_sum_add(&sim->observe.totals[OBSERVE_GRAVITY_WORK], -mass * rise);
     }
 }

@@ -88,9 +88,9 @@ static struct split split_facet(const struct simulation *sim,
     const struct spheres *spheres = &sim->spheres;
     const int i = contact->sphere, wall = sim->bodies.list[contact->body].material;
     const struct rigid *rigid = sim->bodies.list[contact->body].rigid;
-    const double *x = sphere_position(spheres, i), w = sphere_inverse_mass(spheres, i);
+    const double w = sphere_inverse_mass(spheres, i);
     const double yield =
-        rigid != NULL ? rigid_yield_most(rigid, (struct vec3){x[0], x[1], x[2]}) : 0.0;
+        rigid != NULL ? rigid_yield_most(rigid, sphere_place(spheres, i)) : 0.0;
     struct split split = {
         critical_step_contact(
             &sim->materials.pairs[spheres->material[i] * sim->materials.n + wall],
@@ -121,8 +121,8 @@ static void load_bodies(const struct simulation *sim)
         const struct body *body = &sim->bodies.list[contact->body];
         if (!facet_touches(contact) || body->rigid == NULL)
             continue;
-        const double *x = sphere_position(&sim->spheres, contact->sphere);
-        const double yield = rigid_yield_most(body->rigid, (struct vec3){x[0], x[1], x[2]});
+        const struct vec3 x = sphere_place(&sim->spheres, contact->sphere);
+        const double yield = rigid_yield_most(body->rigid, x);
         const struct critical_step_contact felt = split_facet(sim, contact).contact;
         exact_sum_add(&sums[2 * contact->body], stiffest(felt.stiffness) * yield);
         exact_sum_add(&sums[2 * contact->body + 1], stiffest(felt.damping) * yield);
