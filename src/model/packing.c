@@ -176,6 +176,7 @@ bool packing_open(struct packing *packing, const struct job *job, int group, cha
     if (file == NULL) {
         *why = array_format("%s: cannot be read (%s); a CSV file of spheres is expected",
                             reader.path, strerror(errno));
+        packing_close(packing);
         return false;
     }
     const bool fine = read_rows(packing, job, file, &reader);
