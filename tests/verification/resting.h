@@ -6,12 +6,14 @@
 #define TREMIE_TESTS_VERIFICATION_RESTING_H
 
 #include "base/vec3.h"
+#include "impact.h"
 
 struct simulation;
 
-extern const double resting_radius;  /* [m] */
-extern const double resting_gravity; /* [m/s2] */
-extern const double resting_step;    /* [s] */
+extern const struct impact_solid resting_solid; /* of ball and plane */
+extern const double resting_radius;             /* [m] */
+extern const double resting_gravity;            /* [m/s2] */
+extern const double resting_step;               /* [s] */
 
 struct resting {
     double friction;
@@ -22,6 +24,8 @@ struct resting {
     struct vec3 spin; /* [rad/s] */
 };
 
+/* Overlap at rest [m]. */
+double resting_overlap(const struct resting *resting);
 /* Restitution is .5.  verify_scene_free() releases it. */
 struct simulation *resting_scene(const struct resting *resting);
 
