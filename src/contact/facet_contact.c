@@ -448,14 +448,6 @@ static void empty_batch(const struct step *step)
     batch->n = 0;
 }
 
-static struct vec3 wall_velocity(const struct body *body, struct vec3 point)
-{
-    if (!body->moves)
-        return (struct vec3){0.0, 0.0, 0.0};
-    const struct vec3 arm = vec3_sub(point, body->pivot_now);
-    return vec3_add(body->velocity_now, vec3_cross(body->spin_now, arm));
-}
-
 /* Puts a contact into the batch; one that ends has no overlap, and what its spring still held
  * is counted as lost. */
 static void add_contact(const struct step *step, int entry, const struct contact_geometry *at,
@@ -476,9 +468,12 @@ static void add_contact(const struct step *step, int entry, const struct contact
     const struct vec3 rolling = vec3_cross(vec3_of(spin), normal); /* R w x n [m/s] */
     const struct vec3 surface =
         vec3_add(vec3_of(sphere_velocity(spheres, contact->sphere)), rolling);
-    const struct vec3 wall = wall_velocity(body, at->point);
+    struct vec3 wall = {0.0, 0.0, 0.0}, turns = {0.0, 0.0, 0.0};
+    if (body->moves || body->surface_runs) {
+        wall = body_velocity(body, at->point, normal);
+        turns = body_spin(body);
+    }
     const struct vec3 velocity = vec3_sub(wall, surface);
-    const struct vec3 still = {0.0, 0.0, 0.0}, turns = body->moves ? body->spin_now : still;
     const double normals[3] = {normal.x, normal.y, normal.z};
     const double velocities[3] = {velocity.x, velocity.y, velocity.z};
     const double spins[3] = {turns.x - spin[4], turns.y - spin[5], turns.z - spin[6]};
@@ -661,7 +656,7 @@ static double held_energy(const struct spheres *spheres, const struct body *body
     const int i = contact->sphere;
     const struct vec3 centre = sphere_place(spheres, i);
     const struct vec3 drift =
-        vec3_sub(vec3_of(sphere_velocity(spheres, i)), wall_velocity(body, centre));
+        vec3_sub(vec3_of(sphere_velocity(spheres, i)), body_drift(body, centre));
     const struct contact_geometry at = contact_geometry_closest(
         &body->mesh, contact->feature, vec3_axpy(centre, -0.5 * dt, drift));
     const double overlap = sphere_radius(spheres, i) - at.distance;

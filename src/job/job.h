@@ -251,6 +251,10 @@ struct job_body {
     struct job_motion *motions;
     struct job_driven driven;
     struct job_free free;
+    struct { /* the surface runs while the body stays: translation and rotation alone */
+        bool given;
+        struct job_motion motion;
+    } surface;
     bool comes_and_goes;
     double active[2]; /* then: when it comes and when it goes [s] */
 };

@@ -580,6 +580,25 @@ static void free_check(const struct check *check, const struct job_free *asked, 
                 "two together, are expected");
 }
 
+/* A surface that runs. */
+static void running_check(const struct check *check, const struct job_body *body, int i)
+{
+    const struct job_motion *motion = &body->surface.motion;
+    char path[64];
+    if (!body->surface.given)
+        return;
+    PATH("bodies.%d.surface", i);
+    if (body->driven.given || body->free.given)
+        mistake(
+            check, path,
+            "is that of a body that forces move; one at rest, or with a motion, is expected");
+    if (vec3_norm(motion->velocity) == 0.0 && vec3_norm(motion->axis) == 0.0)
+        mistake(check, path, "does not run; a velocity or a rotation is expected");
+    PATH("bodies.%d.surface.stop", i);
+    if (!(motion->start < motion->stop))
+        mistake(check, path, "is not after start; a later time is expected");
+}
+
 /* What moves a body besides a motion. */
 static void forced_check(const struct check *check, const struct job_body *body, int i)
 {
@@ -732,6 +751,7 @@ static void bodies_check(const struct check *check, bool read_files, bool *stand
         shape_check(check, body, i, read_files);
         motions_check(check, body, i);
         forced_check(check, body, i);
+        running_check(check, body, i);
         PATH("bodies.%d.active", i);
         if (body->comes_and_goes && !(body->active[0] < body->active[1]))
             mistake(check, path,

@@ -467,6 +467,26 @@ static const struct schema_key motion_keys[] = {
      .word = "never", .word_value = INFINITY, AT(struct job_motion, stop)},
     END};
 
+static const struct schema_key surface_rotation_keys[] = {
+    {"point", SCHEMA_NUMBER, "a point of the axis", .unit = "m", .required = true,
+     BETWEEN(-FAR, FAR), AT(struct job_motion, pivot)},
+    {"axis", SCHEMA_DIRECTION, "direction of the axis; the right hand's thumb",
+     .required = true, AT(struct job_motion, axis)},
+    {"rate", SCHEMA_NUMBER, "angular velocity about the axis", .unit = "rad/s",
+     .required = true, BETWEEN(-FAR, FAR), AT(struct job_motion, rate)},
+    END};
+
+static const struct schema_key surface_keys[] = {
+    {"velocity", SCHEMA_NUMBER, "velocity that it runs with", .unit = "m/s", .standard = ZERO,
+     BETWEEN(-FAR, FAR), AT(struct job_motion, velocity)},
+    {"rotation", SCHEMA_GROUP, "rotation that it runs with, like that of a roller",
+     .inside = surface_rotation_keys, GIVEN(struct job_motion, axis)},
+    {"start", SCHEMA_NUMBER, "when it begins to run", .unit = "s", .standard = "0",
+     BETWEEN(0.0, 1e9), AT(struct job_motion, start)},
+    {"stop", SCHEMA_NUMBER, "when it stops", .unit = "s", .standard = "never", AT_LEAST(0.0),
+     .word = "never", .word_value = INFINITY, AT(struct job_motion, stop)},
+    END};
+
 static const struct schema_key driven_keys[] = {
     {"kind", SCHEMA_CHOICE, "slide along the axis, or turn about it", .required = true,
      .choices = drives, AT(struct job_body, driven.kind)},
@@ -561,6 +581,11 @@ static const struct schema_key body_keys[] = {
      "moved in all directions by gravity and the spheres, in place of `motion`; it does not "
      "feel other bodies",
      .inside = free_keys, GIVEN(struct job_body, free.given)},
+    {"surface", SCHEMA_GROUP,
+     "its surface runs, like a belt, while the body stays where it is or moves as prescribed: "
+     "of the velocity, fixed in space, what lies in the plane of contact acts",
+     .inside = surface_keys, .offset = offsetof(struct job_body, surface.motion),
+     GIVEN(struct job_body, surface.given)},
     {"active", SCHEMA_NUMBER,
      "times between which it is there, like a plug that is drawn; always when left out",
      .unit = "s", BETWEEN(0.0, 1e9), GIVEN(struct job_body, comes_and_goes),

@@ -79,20 +79,27 @@ static double arm_of(const struct mesh *mesh, const struct motion_place *place)
     return most;
 }
 
+/* A bound on the speed that a motion gives a vertex which has strayed by up to so much from its
+ * place at the start [m/s]; the motion lets it stray farther by the end of the run. */
+static double speed_of(const struct body *body, const struct job_motion *motion, double end,
+                       double *strayed)
+{
+    const struct motion_place place = motion_place(motion, 0.0);
+    const double spin = motion_spin_most(motion);
+    const double arm = arm_of(&body->mesh, &place) + *strayed;
+    *strayed += motion_shift_most(motion, end) + (spin > 0.0 ? 2.0 * arm : 0.0);
+    return motion_speed_most(motion) + spin * arm;
+}
+
 /* No vertex is ever faster than the motions of one time together, each with the arm that those
- * before it may have given the vertex by the end of the run. */
-static double fastest(const struct body *body, double end)
+ * before it may have given the vertex by the end of the run; `strayed` is how far any may be
+ * from its place at the start then. */
+static double fastest(const struct body *body, double end, double *strayed)
 {
     double *speeds = array_allocate((size_t)body->n_motions, sizeof *speeds);
-    double strayed = 0.0, most = 0.0; /* [m] from the place at the start, [m/s] */
-    for (int m = 0; m < body->n_motions; m++) {
-        const struct job_motion *motion = &body->motions[m];
-        const struct motion_place place = motion_place(motion, 0.0);
-        const double spin = motion_spin_most(motion);
-        const double arm = arm_of(&body->mesh, &place) + strayed;
-        speeds[m] = motion_speed_most(motion) + spin * arm;
-        strayed += motion_shift_most(motion, end) + (spin > 0.0 ? 2.0 * arm : 0.0);
-    }
+    double most = 0.0; /* [m/s] */
+    for (int m = 0; m < body->n_motions; m++)
+        speeds[m] = speed_of(body, &body->motions[m], end, strayed);
     /* The most of all acts when one of them begins. */
     for (int m = 0; m < body->n_motions; m++) {
         double sum = 0.0;
@@ -104,6 +111,45 @@ static double fastest(const struct body *body, double end)
     }
     free(speeds);
     return most;
+}
+
+/* ---------------------------------------------------------------------------------- surface */
+
+/* How the surface runs between half a step before `half` and half a step after. (3.6) */
+static void run_surface(struct body *body, double half, double dt)
+{
+    const struct motion_rate rate = motion_rate(body->surface, half, dt);
+    body->surface_runs = half > body->surface->start && half < body->surface->stop;
+    body->surface_velocity = rate.velocity;
+    body->surface_spin = rate.spin;
+    body->surface_pivot = body->surface->pivot;
+}
+
+struct vec3 body_drift(const struct body *body, struct vec3 point)
+{
+    if (!body->moves)
+        return ZERO;
+    const struct vec3 arm = vec3_sub(point, body->pivot_now);
+    return vec3_add(body->velocity_now, vec3_cross(body->spin_now, arm));
+}
+
+struct vec3 body_velocity(const struct body *body, struct vec3 point, struct vec3 normal)
+{
+    const struct vec3 drift = body_drift(body, point);
+    if (!body->surface_runs)
+        return drift;
+    const struct vec3 arm = vec3_sub(point, body->surface_pivot);
+    const struct vec3 run =
+        vec3_add(body->surface_velocity, vec3_cross(body->surface_spin, arm));
+    return vec3_add(drift, vec3_axpy(run, -vec3_dot(run, normal), normal));
+}
+
+struct vec3 body_spin(const struct body *body)
+{
+    struct vec3 spin = body->moves ? body->spin_now : ZERO;
+    if (body->surface_runs)
+        spin = vec3_add(spin, body->surface_spin);
+    return spin;
 }
 
 /* ----------------------------------------------------------------------------------- forced */
@@ -153,7 +199,13 @@ static void body_build(struct body *body, const struct job_body *asked, double e
     }
     for (int m = 0; m < body->n_motions; m++)
         body->moves = body->moves || motion_moves(&body->motions[m]);
-    body->speed_max = body->moves ? fastest(body, end) : 0.0;
+    double strayed = 0.0;
+    body->speed_max = body->moves ? fastest(body, end, &strayed) : 0.0;
+    if (asked->surface.given) {
+        body->surface = array_allocate(1, sizeof *body->surface);
+        *body->surface = asked->surface.motion;
+        body->surface_speed_max = speed_of(body, body->surface, end, &strayed);
+    }
 }
 
 void bodies_build(struct bodies *bodies, const struct job *job)
@@ -174,6 +226,7 @@ void bodies_clear(struct bodies *bodies)
         for (int m = 0; m < body->n_motions; m++)
             free(body->motions[m].path.points);
         free(body->motions);
+        free(body->surface);
         free(body->rigid);
         free(body->name);
         mesh_clear(&body->mesh);
@@ -196,6 +249,8 @@ void bodies_place(struct bodies *bodies, int64_t step, double dt)
     for (int b = 0; b < bodies->n; b++) {
         struct body *body = &bodies->list[b];
         body->exists = body_exists(body, step, dt);
+        if (body->surface != NULL)
+            run_surface(body, half_before, dt);
         if (!body->moves)
             continue;
         if (body->rigid != NULL) {

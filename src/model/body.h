@@ -31,10 +31,18 @@ struct body {
     struct vec3 velocity_now; /* [m/s] */
     struct vec3 spin_now;     /* [rad/s] */
     struct vec3 pivot_now;    /* [m] */
-    bool exists;              /* at this step; one that does not touches nothing */
-    bool comes_and_goes;      /* does that ever change? */
-    double active[2];         /* then: when it comes and goes [s] */
-    double placed_at;         /* time at which the vertices are where they are [s] */
+    /* A surface that runs while the body stays: at the point x of it with the normal n it has
+     * what is tangential of surface_velocity + surface_spin x (x - surface_pivot) besides. */
+    struct job_motion *surface;   /* NULL: it does not */
+    bool surface_runs;            /* at this step */
+    struct vec3 surface_velocity; /* [m/s] */
+    struct vec3 surface_spin;     /* [rad/s] */
+    struct vec3 surface_pivot;    /* [m] */
+    double surface_speed_max;     /* a bound over all time [m/s] */
+    bool exists;                  /* at this step; one that does not touches nothing */
+    bool comes_and_goes;          /* does that ever change? */
+    double active[2];             /* then: when it comes and goes [s] */
+    double placed_at;             /* time at which the vertices are where they are [s] */
     double speed_max; /* fastest vertex, for allowances: over all time, or of a body that forces
                        * move at present [m/s] */
 };
@@ -51,6 +59,13 @@ void bodies_clear(struct bodies *bodies);
  * (step - 1/2) * dt as the spheres' half-step velocities have; those that forces move are where
  * their state says.  Bodies at rest cost nothing. */
 void bodies_place(struct bodies *bodies, int64_t step, double dt);
+/* Velocity of the body at a point. */
+struct vec3 body_drift(const struct body *body, struct vec3 point);
+/* Velocity of the surface at a point with a normal of length 1: that of the body, and what
+ * the surface runs. */
+struct vec3 body_velocity(const struct body *body, struct vec3 point, struct vec3 normal);
+/* Angular velocity of the surface. */
+struct vec3 body_spin(const struct body *body);
 /* Is the body there at a step? */
 bool body_exists(const struct body *body, int64_t step, double dt);
 

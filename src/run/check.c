@@ -111,8 +111,11 @@ static double foresee_speed(const struct job *job, const struct bodies *bodies,
 {
     const double fall = limits_fall_speed(job);
     double speed = speed_at_start > fall ? speed_at_start : fall;
-    for (int b = 0; b < bodies->n; b++)
-        speed = bodies->list[b].speed_max > speed ? bodies->list[b].speed_max : speed;
+    for (int b = 0; b < bodies->n; b++) {
+        const struct body *body = &bodies->list[b];
+        speed = body->speed_max > speed ? body->speed_max : speed;
+        speed = body->surface_speed_max > speed ? body->surface_speed_max : speed;
+    }
     return speed;
 }
 

@@ -84,6 +84,8 @@ static void print_body(const struct job *job, const struct body *body)
                mesh->n_bands > 0 ? "curved surface" : "facet", n == 1 ? "" : "s",
                body->moves && body->rigid == NULL ? ", moves as prescribed" : "");
     print_forced(body);
+    if (body->surface != NULL)
+        report_say("          its surface runs, at most at %.4g m/s", body->surface_speed_max);
     if (body->comes_and_goes)
         report_say("          there from %.6g s to %.6g s", body->active[0], body->active[1]);
     report_say("          x %.4g .. %.4g, y %.4g .. %.4g, z %.4g .. %.4g m", survey.low.x,

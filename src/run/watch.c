@@ -344,13 +344,16 @@ void watch_bodies(struct watch *watch, const struct simulation *sim)
         watch->loads = array_allocate((size_t)sim->bodies.n, sizeof *watch->loads);
     for (int b = 0; b < sim->bodies.n && watch->failure == WATCH_FINE; b++) {
         const struct body *body = &sim->bodies.list[b];
-        const double motion = body->speed_max * sim->dt / radius_least;
+        const bool runs = body->surface_speed_max > body->speed_max;
+        const double speed = runs ? body->surface_speed_max : body->speed_max;
+        const double motion = speed * sim->dt / radius_least;
         if (motion <= sim->job->watch.motion)
             continue;
         fail(watch, WATCH_MOTION);
         watch->motion = motion;
         snprintf(watch->what, sizeof watch->what,
-                 "body '%.60s' moves %.3g of the least radius in a step", body->name, motion);
+                 "%sbody '%.60s' moves %.3g of the least radius in a step",
+                 runs ? "the surface of " : "", body->name, motion);
     }
 }
 
