@@ -115,11 +115,23 @@ static void select_pairs(struct contact_set *contacts, const struct candidates *
     }
 }
 
-/* Entry of the pair, -1 when it is not listed. */
-static int find_entry(const struct contact_set *contacts, int first, int second)
+/* Entry of the pair, -1 when it is not listed.  Rows are short, but those of spheres that are
+ * much larger than others; they are in order of the second's place. */
+static int find_entry(const struct contact_set *contacts, const struct candidates *candidates,
+                      int first, int second)
 {
-    for (int k = contacts->row_begin[first]; k < contacts->row_end[first]; k++) {
-        if (contacts->now.second[k] == second)
+    enum { SHORT = 16 };
+    const int *list = contacts->now.second, *places = candidates->place;
+    int begin = contacts->row_begin[first], end = contacts->row_end[first];
+    while (end - begin > SHORT) {
+        const int middle = begin + (end - begin) / 2;
+        if (places[list[middle]] <= places[second])
+            begin = middle;
+        else
+            end = middle;
+    }
+    for (int k = begin; k < end; k++) {
+        if (list[k] == second)
             return k;
     }
     return -1;
@@ -136,8 +148,8 @@ static bool place_between(struct contact_set *contacts, const struct candidates 
                           int first, int second, const double history[CONTACT_LANES])
 {
     const bool turned = candidates->place[first] > candidates->place[second];
-    const int entry =
-        turned ? find_entry(contacts, second, first) : find_entry(contacts, first, second);
+    const int entry = turned ? find_entry(contacts, candidates, second, first)
+                             : find_entry(contacts, candidates, first, second);
     if (entry < 0)
         return false;
     for (int l = 0; l < CONTACT_LANES; l++)
