@@ -628,37 +628,6 @@ static void forced_check(const struct check *check, const struct job_body *body,
         free_check(check, &body->free, i);
 }
 
-static double along(struct vec3 v, int k)
-{
-    return k == 0 ? v.x : k == 1 ? v.y : v.z;
-}
-
-/* Does gravity change along a direction (0 to 2)? */
-static bool gravity_changes(const struct job *job, int k)
-{
-    const struct vec3 axis = job->gravity_turn.axis;
-    bool changes = vec3_norm(axis) > 0.0 && fabs(along(axis, k)) != 1.0;
-    for (int r = 1; r < job->n_gravity_table; r++)
-        changes = changes || along(job->gravity_table[r].gravity, k) !=
-                                 along(job->gravity_table[0].gravity, k);
-    return changes;
-}
-
-/* What a sphere gains by crossing a periodic boundary is booked when its place is brought into
- * the domain, at some later step: gravity along there must be the same by then. */
-static void gravity_periodic_check(const struct check *check)
-{
-    const struct job *job = check->job;
-    bool changes = false;
-    for (int k = 0; k < 3; k++)
-        changes = changes || ((job->domain.periodic & 1 << k) != 0 && gravity_changes(job, k));
-    if (changes && job->energy_ledger)
-        mistake(check, job->n_gravity_table > 0 ? "gravity_table" : "gravity_turn",
-                "changes gravity along a direction of domain.periodic, which the energy ledger "
-                "cannot follow; gravity that is constant there, or contact.ledger: false, is "
-                "expected");
-}
-
 static void gravity_check(const struct check *check)
 {
     const struct job *job = check->job;
@@ -668,7 +637,6 @@ static void gravity_check(const struct check *check)
         return;
     if (job->n_gravity_table > 0 && turns)
         mistake(check, "gravity_table", "stands beside gravity_turn; one of them is expected");
-    gravity_periodic_check(check);
     if (turns && !(job->gravity_turn.start < job->gravity_turn.stop))
         mistake(check, "gravity_turn.stop", "is not after start; a later time is expected");
     for (int k = 1; k < job->n_gravity_table; k++) {

@@ -190,30 +190,40 @@ static double sphere_energies(const struct simulation *sim, int i, double energi
     return speed2;
 }
 
-/* Adds the potential energy by which spheres that lie beyond a periodic boundary differ from
- * their images within: a rounded share a period, so the moment of the bookkeeping does not
- * show.  (7.2) */
-static void add_crossings(const struct simulation *sim, struct exact_sum *sum)
+/* Adds mass times way along a direction of all periods by which spheres lie beyond the domain: a
+ * rounded share a period, so the moment of the bookkeeping does not show.  (7.3) */
+static void add_crossings(const struct simulation *sim, struct exact_sum sums[3])
 {
     const struct periodic *periodic = &sim->spheres.periodic;
-    const double g[3] = {sim->gravity.x, sim->gravity.y, sim->gravity.z};
     for (int i = 0; i < sim->spheres.n_owned && periodic->any; i++) {
         double place[3];
         int turns[3];
         memcpy(place, sphere_position(&sim->spheres, i), sizeof place);
         periodic_wrap(periodic, place, turns);
         for (int k = 0; k < 3; k++) {
-            const double share =
-                g[k] * periodic->period[k] / sphere_inverse_mass(&sim->spheres, i);
+            const double share = periodic->period[k] / sphere_inverse_mass(&sim->spheres, i);
             for (int n = turns[k]; n != 0; n += n > 0 ? -1 : 1)
-                exact_sum_add(sum, n > 0 ? -share : share);
+                exact_sum_add(&sums[k], n > 0 ? share : -share);
         }
     }
 }
 
 void observe_crossings(struct simulation *sim)
 {
-    add_crossings(sim, &sim->observe.totals[OBSERVE_CROSSED]);
+    add_crossings(sim, &sim->observe.totals[OBSERVE_CROSSED_X]);
+}
+
+/* The same since step 0, of all ranks [kg m].  Collective. */
+static struct vec3 crossings_total(const struct simulation *sim)
+{
+    struct exact_sum sums[3];
+    if (!sim->spheres.periodic.any)
+        return (struct vec3){0.0, 0.0, 0.0};
+    memcpy(sums, &sim->observe.totals[OBSERVE_CROSSED_X], sizeof sums);
+    add_crossings(sim, sums);
+    exact_sum_reduce(sim->comm, sums, 3);
+    return (struct vec3){exact_sum_value(&sums[0]), exact_sum_value(&sums[1]),
+                         exact_sum_value(&sums[2])};
 }
 
 /* Elastic energy of the pairs whose first sphere is owned, and their number. */
@@ -288,8 +298,6 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
                 exact_sum_add(&sums[e], own[e]);
         }
     }
-    exact_sum_merge(&sums[ENERGY_POTENTIAL], &sim->observe.totals[OBSERVE_CROSSED]);
-    add_crossings(sim, &sums[ENERGY_POTENTIAL]);
     counts[0] = sim->spheres.n_owned;
     counts[1] = add_pair_energy(sim, &sums[ENERGY_ELASTIC]);
     counts[2] = count_facets(sim);
@@ -312,6 +320,7 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
     comm_max(sim->comm, &speed2_max, 1);
     for (int e = 0; e < N_ENERGIES; e++)
         energies[e] = exact_sum_value(&sums[e]);
+    energies[ENERGY_POTENTIAL] -= vec3_dot(sim->gravity, crossings_total(sim));
     energies[ENERGY_WORK] *= 0.5;
     if (sim->gravity_varies)
         energies[ENERGY_WORK] += total_of(sim, &sim->observe.totals[OBSERVE_GRAVITY_WORK]);
@@ -528,6 +537,9 @@ void observe_gravity(struct simulation *sim)
                             dg.z * (x.z - half * v[2]);
         exact_sum_add(&sim->observe.totals[OBSERVE_GRAVITY_WORK], -mass * rise);
     }
+    const double crossed = vec3_dot(dg, crossings_total(sim));
+    if (sim->comm->rank == 0)
+        exact_sum_add(&sim->observe.totals[OBSERVE_GRAVITY_WORK], -crossed);
 }
 
 void observe_removed(struct simulation *sim, int i)
@@ -581,7 +593,8 @@ int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
     static const char *const totals[OBSERVE_N_TOTALS] = {
         "energy_start",       "removed_energy", "removed_friction", "removed_damping",
         "removed_tangential", "last_step",      "turned",           "overlap",
-        "inserted_energy",    "crossed",        "gravity_work",
+        "inserted_energy",    "crossed_x",      "crossed_y",        "crossed_z",
+        "gravity_work",
     };
     static const char *const loads[] = {"force_x",  "force_y",  "force_z",
                                         "torque_x", "torque_y", "torque_z"};

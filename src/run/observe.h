@@ -28,8 +28,10 @@ enum observe_total {
     OBSERVE_TURNED,          /* largest energy turned over so far [J]; on rank 0 */
     OBSERVE_OVERLAP,         /* largest overlap/radius since then, times 2^40; on rank 0 */
     OBSERVE_INSERTED_ENERGY, /* carried in by spheres that came in [J] */
-    OBSERVE_CROSSED,         /* potential energy gained by crossing periodic boundaries [J] */
-    OBSERVE_GRAVITY_WORK,    /* of gravity that changes, on the spheres [J] */
+    OBSERVE_CROSSED_X,       /* mass times periods crossed [kg m] */
+    OBSERVE_CROSSED_Y,
+    OBSERVE_CROSSED_Z,
+    OBSERVE_GRAVITY_WORK, /* of gravity that changes, on the spheres [J] */
     OBSERVE_N_TOTALS,
 };
 
@@ -55,7 +57,7 @@ void observe_overlap(struct simulation *sim, double overlap);
 void observe_crossings(struct simulation *sim);
 /* Books what contacts with bodies that are no more held, before the step's forces.  Local. */
 void observe_gone(struct simulation *sim);
-/* Books the work of gravity that has changed since the step before.  Local. */
+/* Books the work of gravity that has changed since the step before.  Collective. */
 void observe_gravity(struct simulation *sim);
 /* Velocity v and spin w of sphere i brought to the step, when its forces are known.  Local. */
 void observe_motion(const struct simulation *sim, int i, double v[3], double w[3]);

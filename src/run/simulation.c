@@ -209,9 +209,9 @@ int simulation_create(struct simulation *sim, const struct comm *comm, const str
 /* Files of before there was such a total have none. */
 static bool may_be_missing(const char *name)
 {
-    static const char *const later[] = {"run.turned",    "run.inserted_energy",
-                                        "leavers.count", "leavers.mass",
-                                        "run.crossed",   "run.gravity_work"};
+    static const char *const later[] = {"run.turned",    "run.inserted_energy", "leavers.count",
+                                        "leavers.mass",  "run.crossed_x",       "run.crossed_y",
+                                        "run.crossed_z", "run.gravity_work"};
     for (size_t k = 0; k < sizeof later / sizeof *later; k++)
         if (strcmp(name, later[k]) == 0)
             return true;
@@ -392,7 +392,8 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
     checkpoint.contacts = contacts;
     checkpoint.n_facet_contacts = facet_contacts_records(&sim->facets, &sim->spheres, &facets);
     checkpoint.facet_contacts = facets;
-    const struct exact_sum crossed = sim->observe.totals[OBSERVE_CROSSED];
+    struct exact_sum crossed[3];
+    memcpy(crossed, &sim->observe.totals[OBSERVE_CROSSED_X], sizeof crossed);
     observe_crossings(sim);
     double(*held)[3] = wrap_places(sim);
     checkpoint.n_monitors = observe_monitors(sim, &totals);
@@ -408,7 +409,7 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
     char *path = run_folder_checkpoint_path(folder, sim->step);
     const int status = checkpoint_write(sim->comm, path, &checkpoint);
     unwrap_places(sim, held);
-    sim->observe.totals[OBSERVE_CROSSED] = crossed;
+    memcpy(&sim->observe.totals[OBSERVE_CROSSED_X], crossed, sizeof crossed);
     free(path);
     checkpoint_clear(&checkpoint);
     return status;

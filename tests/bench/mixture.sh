@@ -3,7 +3,7 @@
 #
 #   tests/bench/mixture.sh [ROUNDS=3] [STEPS=4000]
 #
-# Three beds of 12000 spheres settle once, in about half a minute each, into build/bench/mixture.  Then,
+# Three beds of 6000 spheres settle once, in about half a minute each, into build/bench/mixture.  Then,
 # ROUNDS times in turn, each goes on for STEPS steps: once as it comes, once with a search forced every 20
 # steps, which is what fast flow asks for.  User CPU time less that of a run of hardly any steps is divided
 # by steps and touching contacts, with bodies included.
@@ -14,7 +14,7 @@ BIN=$(realpath "${BIN:-bin}")
 ROUNDS=${ROUNDS:-3} STEPS=${STEPS:-4000}
 HERE=$PWD/tests/bench
 WORK=$PWD/build/bench/mixture
-DT=4e-5 SETTLED=30000 # [s], steps; as in mixture.yaml
+DT=2e-5 SETTLED=40000 # [s], steps; as in mixture.yaml
 export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 export OMPI_MCA_btl_base_warn_component_unused=0
 
