@@ -190,8 +190,8 @@ static double sphere_energies(const struct simulation *sim, int i, double energi
     return speed2;
 }
 
-/* Adds mass times way along a direction of all periods by which spheres lie beyond the domain: a
- * rounded share a period, so the moment of the bookkeeping does not show.  (7.3) */
+/* Adds mass times way along each direction of all periods by which spheres lie beyond the
+ * domain: a rounded share a period, so the moment of the bookkeeping does not show.  (7.3) */
 static void add_crossings(const struct simulation *sim, struct exact_sum sums[3])
 {
     const struct periodic *periodic = &sim->spheres.periodic;
