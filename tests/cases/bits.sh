@@ -70,6 +70,8 @@ reference seams seams
 seam() { like seams "$1" "seams, $3 grid$4" seams --set "decomposition.grid=$2" "${@:5}"; }
 seam 2 [2,1,1] 2x1x1 ", an edge on the cut, search every 3 steps" $(every 3)
 seam 4 [2,2,1] 2x2x1 ", a vertex on both cuts, cuts anew every 9 steps" $(both_levels 9 9)
+like seams 3 "seams on 3 ranks" seams
+seam 8 [2,2,2] 2x2x2 ", a vertex on three cuts"
 like seams 1 "seams, all pairs" seams $all_pairs
 rm -rf seams
 
@@ -110,14 +112,14 @@ like machines 1 "machines, all pairs" machines $all_pairs
 rm -rf machines
 
 # ------------------------------------------------------------------ physics and kernels
-# variants NAME SCENE OPTIONS...: another physics on one rank, three and five.
+# variants NAME SCENE OPTIONS...: another physics on one rank, three and eight.
 variants()
 {
     local name=$1 scene=$2
     shift 2
     reference "$name" "$scene" "$@"
     like "$name" 3 "$name on 3 ranks, search every 7 steps" "$scene" "$@" $(every 7)
-    like "$name" 5 "$name on 5 ranks, both levels at odd moments" "$scene" "$@" $(both_levels 17 23)
+    like "$name" 8 "$name on 8 ranks, both levels at odd moments" "$scene" "$@" $(both_levels 17 23)
 }
 for scene in heap mixed; do
     sticky="--set contact.pairs.0.friction=10 --set contact.pairs.1.friction=10"
