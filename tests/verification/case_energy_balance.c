@@ -1,12 +1,12 @@
 /* long */
 /*
  * Three hundred spheres of mixed sizes fall into a box and come to rest, at the step that the
- * program itself chooses and at half of it.  What they had is then heat, and the ledger says by what: friction,
- * damping, the tangential law.  In one scene the box shakes meanwhile, to and fro and about its
- * axis: then its work comes in.  The sum is off by the error of time integration (THEORY.md,
- * section 1.4 and (7.1)), of second order: what is asked for, .1 %, is asked of half the
- * automatic step, at which the fastest of these impacts last some 50 steps; at the automatic step
- * itself it may be four times as much.
+ * program itself chooses and at half of it.  What they had is then heat, and the ledger says by
+ * what: friction, damping, the tangential law.  In one scene the box shakes meanwhile, to and
+ * fro and about its axis: then its work comes in.  The sum is off by the error of time
+ * integration (THEORY.md, section 1.4 and (7.1)), of second order: what is asked for, .1 %, is
+ * asked of half the automatic step, at which the fastest of these impacts last some 50 steps;
+ * at the automatic step itself it may be four times as much.
  */
 #include <math.h>
 #include <stdio.h>

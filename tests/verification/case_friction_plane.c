@@ -14,10 +14,10 @@
 
 static const double DEGREE = M_PI / 180.0;
 
-/* When friction has fallen to half, since slip ended [s].  Up to then the spring held all of mu
- * m g and the dashpot nothing; then the two are an oscillator of 7/2 k_t/m: with the share z of
- * critical damping and the spring's force h in units of mu m g, h'' + 2 z w h' + w^2 h = 0 from h
- * = 1, h' = 0, and friction is h + 2 z h'/w. */
+/* When friction has fallen to half, since slip ended [s].  Up to then the spring held all of
+ * mu m g and the dashpot nothing; then the two are an oscillator of 7/2 k_t/m: with the
+ * share z of critical damping and the spring's force h in units of mu m g, h'' + 2 z w h' +
+ * w^2 h = 0 from h = 1, h' = 0, and friction is h + 2 z h'/w. */
 static double half_after_slip(const struct resting *resting)
 {
     const struct impact_solid *s = &resting_solid;

@@ -74,8 +74,8 @@ static void case_4(void)
             verify_row(name[2], "deg", expected[2], rebound, 6e-4, VERIFY_ABSOLUTE,
                        "1e-5 radians");
         } else {
-            /* The published angle is not met within 3 % of itself but at 30 degrees: that small a
-             * difference of two large speeds is not what 3 % in each determines. */
+            /* The published angle is not met within 3 % of itself but at 30 degrees: that
+             * small a difference of two large speeds is not what 3 % in each determines. */
             const double patch =
                 table[k][1] * v_t + table[k][2] * oxide.radius; /* both, by size [m/s] */
             const double differ = 0.03 * patch / (e * v_n) / DEGREE;

@@ -106,8 +106,8 @@ static void compare_depth(void)
     }
 }
 
-/* What a mass point of speed 1 returns by leapfrog, (5.1), whose dashpot is extrapolated, (1.7),
- * and cut off, (1.8), in steps of which the elastic contact lasts so many. */
+/* What a mass point of speed 1 returns by leapfrog, (5.1), whose dashpot is extrapolated,
+ * (1.7), and cut off, (1.8), in steps of which the elastic contact lasts so many. */
 static double point_returns(double restitution, int steps, double phase)
 {
     const double damping = sqrt(5.0) * restitution_damping(restitution);

@@ -2,8 +2,9 @@
  * A force on a facet is shared out to the facet's nodes.  Whatever the facet and wherever on it
  * the force acts, the shares have its resultant and its moment, (2.3).
  *
- * Four thousand facets anywhere in space, down to an angle of about a degree, with ten forces on
- * each face, edge and vertex.  No scene is needed: the shares are asked for as elements will.
+ * Four thousand facets anywhere in space, down to an angle of about a degree, with ten forces
+ * on each face, edge and vertex.  No scene is needed: the shares are asked for as elements
+ * will.
  */
 #include <math.h>
 #include <stdio.h>

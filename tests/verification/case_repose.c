@@ -1,16 +1,15 @@
 /* long */
 /*
- * Spheres settle in a narrow box, then its gate is drawn up and they slide and roll out, over the
- * floor's edge, until a slope remains: the angle of repose, that of the wedge with the same centre
- * of mass.  It has no exact answer; what must hold is that neither
- * it nor the height of the settled bed depends on the step, from the automatic one down, and
- * that both grow with friction and rolling friction.  The box's sides are smooth, so they hold
- * nothing up.
+ * Spheres settle in a narrow box, then its gate is drawn up and they slide and roll out, over
+ * the floor's edge, until a slope remains: the angle of repose, that of the wedge with the same
+ * centre of mass.  It has no exact answer; what must hold is that neither it nor the height of
+ * the settled bed depends on the step, from the automatic one down, and that both grow with
+ * friction and rolling friction.  The box's sides are smooth, so they hold nothing up.
  *
  * Grains come to rest one way or another: the angle of one slope scatters by a degree or two,
- * and a step that differs may be another throw of the dice.  So some beds, which differ in where
- * and how they start, are each compared with themselves, and the mean of these differences is
- * judged by their scatter.
+ * and a step that differs may be another throw of the dice.  So some beds, which differ in
+ * where and how they start, are each compared with themselves, and the mean of these
+ * differences is judged by their scatter.
  */
 #include <math.h>
 #include <stdbool.h>

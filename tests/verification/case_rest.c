@@ -6,10 +6,10 @@
  * do not creep, and energy does not grow.
  *
  * A large sphere stands on three small ones on a plane.  A small one is pressed between plane
- * and large sphere, whose normals are an angle b apart (seen from its centre); as its own weight
- * is next to nothing, the two forces on it are one line, through both contacts, and so off by
- * b/2 from either normal: friction holds where mu > tan(b/2), at any ratio of sizes, and below
- * that the small ones are squeezed out.
+ * and large sphere, whose normals are an angle b apart (seen from its centre); as its own
+ * weight is next to nothing, the two forces on it are one line, through both contacts, and so
+ * off by b/2 from either normal: friction holds where mu > tan(b/2), at any ratio of sizes, and
+ * below that the small ones are squeezed out.
  */
 #include <math.h>
 #include <stdbool.h>

@@ -121,8 +121,9 @@ static struct range orbit(int n, double friction)
     return range;
 }
 
-/* How far the direction turns between two places of press() by (2.2), the spheres as deep in the
- * nearest facet: neighbours that a sphere projects into turn it while they are nearly as deep. */
+/* How far the direction turns between two places of press() by (2.2), the spheres as deep in
+ * the nearest facet: neighbours that a sphere projects into turn it while they are nearly as
+ * deep. */
 static double turn_expected(int n, double overlap)
 {
     const double segment = 2.0 * pi / (double)n, facet = drum * cos(0.5 * segment),
