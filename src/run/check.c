@@ -355,7 +355,7 @@ static void warn_of_limits(const struct job *job, const char *name, const struct
             "time.step is %.3g of the Rayleigh step of '%s'; runs beyond 0.4 are likely "
             "to be unstable",
             step / limits->rayleigh, name);
-    else if (step > limits->springs)
+    else if (step > job->watch.step * limits->springs)
         report_warn(
             "time.step is %.3g of what a full bed allows '%s' as it is struck; it would "
             "be stopped as unstable",
