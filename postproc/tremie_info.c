@@ -295,18 +295,47 @@ static void print_last(const struct series *series)
                strcmp(series->columns[k].unit, "1") == 0 ? "" : series->columns[k].unit);
 }
 
-static void show_series(const char *run)
+/* All samples; headings have the unit at the end, as in time_s, speed_max_m_s. */
+static int write_csv(const struct series *series, const char *path)
+{
+    struct sheet sheet;
+    sheet_init(&sheet);
+    for (int k = 0; k < series->n_columns; k++) {
+        const struct series_column *column = &series->columns[k];
+        const bool plain = strcmp(column->unit, "1") == 0 || column->unit[0] == '\0';
+        char *unit = array_string(column->unit);
+        for (char *c = unit; *c != '\0'; c++)
+            *c = *c == '/' || *c == ' ' ? '_' : *c;
+        sheet_heading(&sheet, "%s%s%s", column->name, plain ? "" : "_", plain ? "" : unit);
+        free(unit);
+    }
+    for (int i = 0; i < series->n_rows * series->n_columns; i++)
+        sheet_cell(&sheet, "%.12g", series->values[i]);
+    const int status = sheet_write_csv(&sheet, path);
+    sheet_clear(&sheet);
+    return status;
+}
+
+static int show_series(const char *run, const char *csv)
 {
     struct series series;
     char *why;
+    int status = REPORT_FINISHED;
     if (!series_read(&series, run, "series", &why)) {
         printf("series              none (%s)\n", why);
+        if (csv != NULL) {
+            report_error("no %s is written: %s has no series", csv, run);
+            status = REPORT_STORAGE;
+        }
         free(why);
-        return;
+        return status;
     }
     printf("series              %d samples; the last one:\n", series.n_rows);
     print_last(&series);
+    if (csv != NULL)
+        status = write_csv(&series, csv);
     series_clear(&series);
+    return status;
 }
 
 /* One line for each checkpoint of the run; the newest is described in full. */
@@ -337,7 +366,7 @@ static int show_checkpoints(const struct comm *comm, const char *run)
     return worst;
 }
 
-static int show_run(const struct comm *comm, const char *run)
+static int show_run(const struct comm *comm, const char *run, const char *csv)
 {
     char *job = array_format("%s/job.yaml", run), *segments = array_format("%s/series", run);
     struct stat entry;
@@ -348,7 +377,8 @@ static int show_run(const struct comm *comm, const char *run)
     } else {
         printf("%s: a run\n", run);
         status = show_checkpoints(comm, run);
-        show_series(run);
+        const int shown = show_series(run, csv);
+        status = shown > status ? shown : status;
     }
     free(job);
     free(segments);
@@ -358,13 +388,16 @@ static int show_run(const struct comm *comm, const char *run)
 int main(int argc, char **argv)
 {
     bool listed = false;
+    const char *csv = NULL;
     const struct arguments_entry entries[] = {
+        {"csv", 0, ARGUMENTS_TEXT, &csv, "FILE",
+         "writes all samples of a run's series as comma-separated values", NULL},
         {"list", 0, ARGUMENTS_FLAG, &listed, NULL,
          "lists the sums and data sets of a checkpoint as well", NULL},
     };
     const struct arguments_page page = {
         "tremie-info",
-        "FILE|RUN [--list]",
+        "FILE|RUN [--csv FILE] [--list]",
         "Shows what a checkpoint, a snapshot, a series file or the folder of a run holds: step,\n"
         "time, counts, extents, masses, energies; and verifies the checksums.\n"
         "\n"
@@ -384,10 +417,15 @@ int main(int argc, char **argv)
             argv[1]);
         return REPORT_BAD_INPUT;
     }
+    if (csv != NULL && !S_ISDIR(entry.st_mode)) {
+        report_error("--csv goes with a run, and %s is a file; give the folder of a run",
+                     argv[1]);
+        return REPORT_BAD_INPUT;
+    }
     MPI_Init(NULL, NULL);
     const struct comm comm = comm_world();
-    status =
-        S_ISDIR(entry.st_mode) ? show_run(&comm, argv[1]) : show_file(&comm, argv[1], listed);
+    status = S_ISDIR(entry.st_mode) ? show_run(&comm, argv[1], csv)
+                                    : show_file(&comm, argv[1], listed);
     MPI_Finalize();
     return status;
 }

@@ -166,6 +166,12 @@ try 0 "$bin/tremie-info" "$one"
 says "A small heap" "300" "all checksums are right" "group heap" "body bin"
 try 0 "$bin/tremie-info" one
 says "checkpoints " "all checksums are right" "kinetic_translation" "middle.mass_forward"
+try 0 "$bin/tremie-info" one --csv series.csv
+head -n 1 series.csv | grep -q '^step,time_s,n_spheres,.*,speed_max_m_s,.*bin.torque_x_N_m' || why+=" headings of the series;"
+[ "$(tail -n 1 series.csv | cut -d , -f 1-3)" = "$(sed -n 's/^  \(step\|time\|n_spheres\)  *\([^ ]*\).*/\2/p' said | paste -sd ,)" ] ||
+    why+=" the series ends otherwise than it says;"
+try 2 "$bin/tremie-info" "$one" --csv series.csv
+says "--csv goes with a run"
 try 0 "$bin/tremie-info" "$(find one/series -name '*.h5' | sort | head -n 1)"
 says "/series/time" "/runtime/wall"
 try 4 "$bin/tremie-info" changed.h5
