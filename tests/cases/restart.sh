@@ -7,58 +7,6 @@ set -uo pipefail
 # shellcheck source=tests/cases/common.sh
 . "$(dirname "$0")/common.sh"
 
-job= # process id of a run in the background
-kill_all() { kill -KILL $(pgrep -P "$job") "$job" 2> /dev/null; }
-trap '[ -z "$job" ] || kill_all' EXIT
-
-# start RANKS OUT SCENE OPTIONS...: a run in the background.
-start()
-{
-    local ranks=$1 out=$2 scene=$3
-    shift 3
-    mpirun --oversubscribe --bind-to none -q -n "$ranks" "$bin/tremie" run "$scenes/$scene.yaml" \
-        --out "$out" "$@" > said 2>&1 < /dev/null &
-    job=$!
-}
-
-# newest RUN: the step of its newest checkpoint, 0 without one.
-newest()
-{
-    local file
-    file=$(find "$1/checkpoints" -name 'step_*.h5' 2> /dev/null | sort | tail -n 1)
-    file=${file##*step_}
-    file=${file%.h5}
-    echo $((10#${file:-0}))
-}
-
-# wait_until_after RUN STEP: until the run has a checkpoint later than that.
-wait_until_after()
-{
-    local tries=0
-    while [ "$(newest "$1")" -le "$2" ]; do
-        sleep 0.02
-        tries=$((tries + 1))
-        if [ $tries -gt $((patience * 30)) ] || ! kill -0 "$job" 2> /dev/null; then
-            why+=" no checkpoint after step $2 came in time;"
-            return
-        fi
-    done
-}
-
-# wait_for_end: its exit status; a run that does not end is killed.
-wait_for_end()
-{
-    local tries=0 status=0
-    while kill -0 "$job" 2> /dev/null; do
-        sleep 0.02
-        tries=$((tries + 1))
-        [ $tries -le $((patience * 30)) ] || kill_all
-    done
-    wait "$job" || status=$?
-    job=
-    return $status
-}
-
 pause_at_random() { sleep "0.$(printf %03d $((RANDOM % 300)))"; }
 
 # end_with SIGNAL STATUS: sends it to mpirun, which is to end so.
@@ -68,13 +16,6 @@ end_with()
     kill -"$1" "$job" 2> /dev/null || why+=" it ended before SIG$1;"
     wait_for_end || status=$?
     [ "$status" = "$2" ] || why+=" after SIG$1 the status is $status, not $2;"
-}
-
-# kill_ranks: all ranks at once, as if the power were gone.
-kill_ranks()
-{
-    kill -KILL $(pgrep -P "$job") 2> /dev/null || why+=" it ended before it could be killed;"
-    wait_for_end && why+=" it ended well though it was killed;"
 }
 
 # digest RUN: of all that a run has kept, its messages aside.
