@@ -547,7 +547,7 @@ static void print_start(const struct job *job, const struct comm *comm)
 
 void check_print(const struct job *job, const struct comm *comm)
 {
-    enum { BYTES_A_SPHERE = 1100, NANOSECONDS_A_STEP = 60, START_MOST = 4000000 };
+    enum { BYTES_A_SPHERE = 3000, NANOSECONDS_A_STEP = 60, START_MOST = 4000000 };
     struct extent scene = extent_nothing();
     struct bodies bodies;
     const int n_ranks = comm->n_ranks;

@@ -9,7 +9,7 @@ tremie 1 check "$scenes/feed.yaml" || why+=" check gives status $?;"
 says "insert    rain: 180 spheres, "
 says "insert    jet: 44 spheres, 12 kg, "
 says "every 7 steps, 0.0007 s: "
-says "memory of the order of 0.24"
+says "memory of the order of 0.67"
 says "start     nothing touches"
 result "what check foresees"
 
