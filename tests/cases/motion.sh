@@ -67,3 +67,7 @@ result "a piston that becomes too fast is named"
 fails 3 "$scenes/plug.yaml" "motion too fast at step 0 (0 s): body 'plug' moves 0.25" \
     --set 'bodies.1.motion=[{velocity: [0, 0, 30]}, {oscillation: {direction: [0, 0, 1], amplitude: 0.01, frequency: 318.3}, start: 0.05}]'
 result "motions that will be too fast are named before the first step"
+
+fails 3 "$scenes/plug.yaml" "motion too fast at step 0 (0 s): the surface of body 'plug' moves 0.25" \
+    --set 'bodies.1.surface={velocity: [0, 30, 40]}'
+result "a surface that will run too fast is named before the first step"
