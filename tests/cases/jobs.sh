@@ -24,7 +24,7 @@ note() { sed -n "s/^# $2: *//p" "$scenes/$1.yaml" | head -n 1; }
 small()
 {
     local name=$1 after ranks counts="2 3" options=()
-    [ -z "${ran[$name]-}" ] || return
+    [ -z "${ran[$name]-}" ] || return 0
     ran[$name]=yes
     after=$(note "$name" after)
     read -ra options <<< "$(note "$name" small)"
