@@ -75,7 +75,7 @@ static void take_spheres(struct spheres *spheres, const struct table *table)
     spheres->n_owned = spheres->n_all = (int)table->n;
     spheres_reserve(spheres, (int)table->n);
     for (int i = 0; i < spheres->n_owned; i++) {
-        double id, material, group;
+        double id = 0.0, material = 0.0, group = 0.0;
         get(table, i, SNAPSHOT_ID, &id);
         get(table, i, SNAPSHOT_POSITION, sphere_position(spheres, i));
         get(table, i, SNAPSHOT_RADIUS, &spheres->motion[i].lane[3]);

@@ -103,6 +103,16 @@ static bool is_idle_part(const struct contents *contents, const struct entry *en
     return idle;
 }
 
+static bool has_column(const struct series *series, const char *name, const char *word)
+{
+    char *column = array_format("%s%s", name, word);
+    bool found = false;
+    for (int k = 0; k < series->n_columns && !found; k++)
+        found = strcmp(series->columns[k].name, column) == 0;
+    free(column);
+    return found;
+}
+
 /* Takes the column as the mark of an entry where it is one.  False when columns lack. */
 static bool read_column(struct contents *contents, const struct series *series,
                         const char *column)
@@ -114,6 +124,10 @@ static bool read_column(struct contents *contents, const struct series *series,
             continue;
         struct entry entry = {.kind = (enum kind)kind, .name = array_string(column)};
         entry.name[length - mark] = '\0';
+        if (kind == KIND_CONTENT && !has_column(series, entry.name, KINDS[kind].count)) {
+            clear_entry(&entry); /* of a body that moves */
+            return true;
+        }
         const bool wanted = contents->by_material || strchr(entry.name, '.') == NULL;
         const bool whole = !wanted || read_entry(&entry, series);
         if (wanted && whole && !is_idle_part(contents, &entry))

@@ -120,6 +120,23 @@ static void names_check(const struct check *check, const char *list, int n,
     free(names);
 }
 
+/* A content and a body that forces move have columns of the same kind in the series. */
+static void content_names_check(const struct check *check)
+{
+    const struct job *job = check->job;
+    for (int c = 0; c < job->n_contents; c++)
+        for (int b = 0; b < job->n_bodies; b++) {
+            const char *content = job->contents[c].name, *body = job->bodies[b].name;
+            char path[64];
+            if (content == NULL || body == NULL || strcmp(content, body) != 0)
+                continue;
+            PATH("contents.%d.name", c);
+            mistake(check, path,
+                    "is '%s' like that of bodies.%d; a name of its own is expected", content,
+                    b);
+        }
+}
+
 /* ------------------------------------------------------------------------------- CSV files */
 
 /* Column of a name in a comma-separated line, -1 where there is none. */
@@ -947,6 +964,7 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     names_check(&check, "bodies", job->n_bodies, job->bodies, sizeof *job->bodies);
     names_check(&check, "sections", job->n_sections, job->sections, sizeof *job->sections);
     names_check(&check, "contents", job->n_contents, job->contents, sizeof *job->contents);
+    content_names_check(&check);
     names_check(&check, "insert", job->n_insertions, job->insertions, sizeof *job->insertions);
     names_check(&check, "remove", job->n_removals, job->removals, sizeof *job->removals);
     spheres_check(&check, read_files, falling);

@@ -214,11 +214,11 @@ static const struct schema_key sizes_keys[] = {
      LIST_AT(struct job_sizes, list, n)},
     END};
 
-/* A region and a distribution of radii within another struct. */
-#define REGION_AT(type, member)                                                                \
-    .inside = region_keys, .offset = offsetof(type, member), GIVEN(type, member.given)
-#define SIZES_AT(type, member)                                                                 \
-    .inside = sizes_keys, .offset = offsetof(type, member), GIVEN(type, member.given)
+/* A region and a distribution of radii within another struct, and their own `given`. */
+#define REGION_AT(type, member, flag)                                                          \
+    .inside = region_keys, .offset = offsetof(type, member), GIVEN(type, flag)
+#define SIZES_AT(type, member, flag)                                                           \
+    .inside = sizes_keys, .offset = offsetof(type, member), GIVEN(type, flag)
 
 #define LATTICES     (KIND(JOB_PACKING_LATTICE) | KIND(JOB_PACKING_HEXAGONAL))
 #define PACKED_FILES (KIND(JOB_PACKING_CSV) | KIND(JOB_PACKING_HDF5))
@@ -239,7 +239,7 @@ static const struct schema_key packing_keys[] = {
      .unit = "1", INSIDE(0.0, 1.0), .kinds = KIND(JOB_PACKING_RANDOM),
      GIVEN(struct job_spheres, fraction), AT(struct job_spheres, fraction)},
     {"region", SCHEMA_GROUP, "where spheres may be, wholly", .required = true,
-     .kinds = KIND(JOB_PACKING_RANDOM), REGION_AT(struct job_spheres, region)},
+     .kinds = KIND(JOB_PACKING_RANDOM), REGION_AT(struct job_spheres, region, region.given)},
     {"gap", SCHEMA_NUMBER,
      "least distance between the surfaces of a sphere and of others, those of groups before "
      "it included",
@@ -282,7 +282,7 @@ static const struct schema_key spheres_keys[] = {
      .unit = "m", ABOVE_TO(0.0, FAR), GIVEN(struct job_spheres, radius),
      AT(struct job_spheres, radius)},
     {"sizes", SCHEMA_GROUP, "radii that differ, instead of `radius`",
-     SIZES_AT(struct job_spheres, sizes)},
+     SIZES_AT(struct job_spheres, sizes, sizes.given)},
     {"velocity", SCHEMA_NUMBER, "velocity at the start (where a file does not give it)",
      .unit = "m/s", .standard = ZERO, BETWEEN(-FAR, FAR), AT(struct job_spheres, velocity)},
     {"spin", SCHEMA_NUMBER, "angular velocity at the start", .unit = "rad/s", .standard = ZERO,
@@ -594,7 +594,7 @@ static const struct schema_key body_keys[] = {
 
 static const struct schema_key damping_region_keys[] = {
     {"region", SCHEMA_GROUP, "where: of spheres whose centres are there", .required = true,
-     REGION_AT(struct job_damping_region, region)},
+     REGION_AT(struct job_damping_region, region, region.given)},
     {"damping", SCHEMA_NUMBER, "there, besides `damping`", .unit = "1/s", .required = true,
      BETWEEN(0.0, 1e9), AT(struct job_damping_region, damping)},
     END};
@@ -655,7 +655,7 @@ static const struct schema_key content_keys[] = {
     {"name", SCHEMA_NAME, "name of the content, used once", .required = true,
      AT(struct job_content, name)},
     {"region", SCHEMA_GROUP, "spheres count whose centre is in it", .required = true,
-     REGION_AT(struct job_content, region)},
+     REGION_AT(struct job_content, region, region.given)},
     BY_MATERIAL(struct job_content),
     END};
 
@@ -693,11 +693,11 @@ static const struct schema_key insertion_keys[] = {
     {"radius", SCHEMA_NUMBER, "radius of all of them", .unit = "m", ABOVE_TO(0.0, FAR),
      GIVEN(struct job_insertion, radius), AT(struct job_insertion, radius)},
     {"sizes", SCHEMA_GROUP, "radii that differ, instead of `radius`",
-     SIZES_AT(struct job_insertion, sizes)},
+     SIZES_AT(struct job_insertion, sizes, sizes.given)},
     {"region", SCHEMA_GROUP,
      "where they appear: places are drawn evenly such that a sphere lies wholly within and "
      "touches nothing",
-     .required = true, REGION_AT(struct job_insertion, region)},
+     .required = true, REGION_AT(struct job_insertion, region, region.given)},
     {"velocity", SCHEMA_NUMBER, "velocity that they come with", .unit = "m/s", .standard = ZERO,
      BETWEEN(-FAR, FAR), AT(struct job_insertion, velocity)},
     {"velocity_spread", SCHEMA_NUMBER,
@@ -726,7 +726,7 @@ static const struct schema_key removal_keys[] = {
      AT(struct job_removal, name)},
     {"region", SCHEMA_GROUP,
      "spheres whose centre is in it are taken out at multiples of 64 steps", .required = true,
-     REGION_AT(struct job_removal, region)},
+     REGION_AT(struct job_removal, region, region.given)},
     {"start", SCHEMA_NUMBER, "when it begins", .unit = "s", .standard = "0", BETWEEN(0.0, 1e9),
      AT(struct job_removal, start)},
     {"stop", SCHEMA_NUMBER, "when it ends", .unit = "s", .standard = "never", AT_LEAST(0.0),

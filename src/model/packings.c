@@ -311,7 +311,8 @@ static char *read_file(struct packing *packing, packings_reader *reader)
                                             .angular_velocity = group->spin,
                                             .radius = group->radius,
                                             .material = group->material};
-    return reader(group->file, &standard, &packing->n, &packing->rows);
+    char *why = reader(group->file, &standard, &packing->n, &packing->rows);
+    return why;
 }
 
 bool packings_open(struct packings *packings, const struct job *job,

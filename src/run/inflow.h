@@ -23,10 +23,10 @@ struct inflow {
     double speed;                     /* no sphere comes in faster [m/s] */
 };
 
-struct inflow inflow_of(const struct job *job, int insertion);
+struct inflow inflow_of(const struct job *job, int number);
 /* What the least and the greatest spheres of each material allow that an insertion brings. */
 void inflow_add_limits(struct limits *limits, const struct job *job,
-                       const struct materials *materials, int insertion);
+                       const struct materials *materials, int number);
 
 /* Lists what is wrong with the regions of the job; grows the box from *low to *high by those of
  * insertions. */

@@ -853,15 +853,15 @@ TEST(a_sphere_laid_on_a_belt_rolls_at_two_sevenths_of_its_speed)
                (struct vec3){0, 0, 0}, (struct vec3){0, 0, 0});
     search(&scene, false);
     const double slip = 2.0 / 7.0 * v_belt / (mu * g);
-    const int n_slip = (int)(slip / scene.dt), n = BEGINS + 2 * n_slip;
+    const int n_slip = (int)(slip / scene.dt), half = n_slip / 2, n = BEGINS + 2 * n_slip;
     double heat = 0.0;
     const double *v = scene.spheres.motion[0].lane + 4, *w = scene.spheres.spin[0].lane + 4;
     for (int k = 0; k < n; k++) {
         if (k == BEGINS)
             EXPECT(v[0] == 0.0 && w[1] == 0.0);
-        if (k == BEGINS + n_slip / 2) {
+        if (k == BEGINS + half) {
             /* The spring winds up first: late by the deflection over the belt's speed. */
-            const double spent = (double)(n_slip / 2) * scene.dt;
+            const double spent = half * scene.dt;
             EXPECT_NEAR(v[0], mu * g * spent, 0.01 * mu * g * spent);
             EXPECT_NEAR(-radius * w[1], 2.5 * v[0], 1e-9);
             EXPECT_NEAR(exact_sum_value(&scene.facets.loads[0].work), mass * v[0] * v_belt,
