@@ -250,7 +250,7 @@ static void draw_faces(struct canvas *canvas, const struct camera *camera,
         for (int f = 0; f < mesh_n_shown(mesh); f++) {
             const int *vertices;
             const int n = mesh_shown(mesh, f, &vertices);
-            struct vec3 corners[4];
+            struct vec3 corners[4] = {{0.0, 0.0, 0.0}};
             for (int k = 0; k < n; k++)
                 corners[k] = mesh->place[vertices[k]];
             if ((int)facet_is_before(corners, camera->eye, middle) == before)

@@ -311,8 +311,7 @@ static char *read_file(struct packing *packing, packings_reader *reader)
                                             .angular_velocity = group->spin,
                                             .radius = group->radius,
                                             .material = group->material};
-    char *why = reader(group->file, &standard, &packing->n, &packing->rows);
-    return why;
+    return reader(group->file, &standard, &packing->n, &packing->rows);
 }
 
 bool packings_open(struct packings *packings, const struct job *job,

@@ -27,7 +27,7 @@ static void settle(const struct periodic *periodic, double x[3])
 static bool is_multiple(double x, double quantum)
 {
     const double count = x / quantum; /* a power of two: exact */
-    return count < 0x1p53 && count > -0x1p53 && count == (double)(int64_t)count;
+    return fabs(count) < 9007199254740992.0 && count == (double)(int64_t)count;
 }
 
 TEST(nothing_is_periodic)
