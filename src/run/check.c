@@ -504,14 +504,30 @@ static void warn_of_end(const struct job *job, const char *name, const struct ex
     }
 }
 
+/* Spheres that leave the domain are removed or stop the run, so none meets such a body. */
+static void warn_of_distance(const struct job *job, const struct body *body,
+                             const struct extent *extent, double radius)
+{
+    const struct vec3 from = job->domain.min, to = job->domain.max;
+    const struct vec3 low = extent->low, high = extent->high;
+    const bool outside = high.x < from.x - radius || low.x > to.x + radius ||
+                         high.y < from.y - radius || low.y > to.y + radius ||
+                         high.z < from.z - radius || low.z > to.z + radius;
+    if (outside && !body->moves && job->domain.leavers != JOB_LEAVERS_IGNORE)
+        report_warn("body '%s' lies outside the domain, where no sphere meets it; move it, or "
+                    "enlarge domain.min and domain.max",
+                    body->name);
+}
+
 static void warn_of_ends(const struct job *job, const struct bodies *bodies, double radius)
 {
-    for (int b = 0; b < bodies->n && job->domain.periodic != 0; b++) {
+    for (int b = 0; b < bodies->n; b++) {
         struct extent extent = extent_nothing();
         const struct body *body = &bodies->list[b];
         for (int v = 0; v < body->mesh.n_vertices; v++)
             extent_add(&extent, body->mesh.reference[v], 0.0);
         warn_of_end(job, body->name, &extent, radius);
+        warn_of_distance(job, body, &extent, radius);
     }
 }
 

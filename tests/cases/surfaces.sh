@@ -97,3 +97,5 @@ warned "a border" "body 'plate', plate.msh: 4 open edges, the first at "
 sed -i 's/scale: 0.001, //' round.yaml
 sed -i 's/time: {end: 0.5/domain: {min: [-2000, -2000, -2000], max: [2000, 2000, 2000]}\ntime: {end: 0.5/' round.yaml
 warned "a file in mm" "body 'wedge', wedge.stl: is 360 m wide, 7.2e+03 radii"
+sed -i 's/domain: .*/domain: {min: [-2000, -2000, -2000], max: [2000, 2000, -1000], leavers: stop}/' round.yaml
+warned "a body outside the domain" "body 'plate' lies outside the domain"
