@@ -247,7 +247,8 @@ static void find_across(struct facet_work *work, int b, const struct mesh *mesh,
             found->features[found->n++] = across->features[k];
         }
     }
-    qsort(found->features, (size_t)found->n, sizeof *found->features, compare_features);
+    if (found->n > 1)
+        qsort(found->features, (size_t)found->n, sizeof *found->features, compare_features);
     int n = 0;
     for (int k = 0; k < found->n; k++)
         if (n == 0 || found->features[n - 1] != found->features[k])
