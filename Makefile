@@ -33,12 +33,11 @@ say = $(if $(V),,@printf '%-8s %s\n' '$(1)' '$(2)';)
 # ---------------------------------------------------------------------------- what there is to build
 
 main := src/run/main.c
-kernel := src/contact/pair_kernel_blocks.c
-library_sources := $(filter-out $(main) $(kernel),$(sort $(wildcard src/*/*.c)))
+# Compiled once for each instruction set: files that say KERNEL_ISA or include what does.
+kernels := src/contact/pair_kernel_blocks.c src/physics/integrate_rows.c
+library_sources := $(filter-out $(main) $(kernels),$(sort $(wildcard src/*/*.c)))
 library_objects := $(library_sources:%.c=$(BUILD)/%.o)
-ifneq ($(wildcard $(kernel)),)
-kernel_objects := $(kernel_isas:%=$(BUILD)/$(kernel:.c=)_%.o)
-endif
+kernel_objects := $(foreach isa,$(kernel_isas),$(kernels:%.c=$(BUILD)/%_$(isa).o))
 library := $(BUILD)/libtremie.a
 
 # A tool is postproc/tremie_NAME.c with the other files of postproc/, which tools share.
@@ -159,10 +158,13 @@ $(BUILD)/%.o: %.c $(rules)
 	@mkdir -p $(@D)
 	$(call say,compile,$<)$(CC) $(CPPFLAGS) $(CFLAGS) $(march) -MMD -MP -c -o $@ $<
 
-# The pair kernel is compiled once for each vector width; the program chooses one when it starts.
-$(kernel_objects): $(BUILD)/$(kernel:.c=)_%.o: $(kernel) $(rules)
-	@mkdir -p $(@D)
-	$(call say,compile,$< ($*))$(CC) $(CPPFLAGS) $(CFLAGS) $(kernel_flags_$*) -MMD -MP -c -o $@ $<
+# The kernels, for each instruction set; the program chooses one when it starts.
+define kernel_rule
+$$(kernels:%.c=$$(BUILD)/%_$(1).o): $$(BUILD)/%_$(1).o: %.c $$(rules)
+	@mkdir -p $$(@D)
+	$$(call say,compile,$$< ($(1)))$$(CC) $$(CPPFLAGS) $$(CFLAGS) $$(kernel_flags_$(1)) -MMD -MP -c -o $$@ $$<
+endef
+$(foreach isa,$(kernel_isas),$(eval $(call kernel_rule,$(isa))))
 
 # What a flavour links in is not ours to check.
 $(flavour_objects): $(BUILD)/%.o: %.c $(rules)

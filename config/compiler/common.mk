@@ -12,17 +12,17 @@ warnings = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Ws
 # reordered.  The other two only drop side effects (errno, traps) that keep loops from using vectors.
 numerics = -ffp-contract=off -fno-math-errno -fno-trapping-math
 
-# Programs run on any x86-64 processor of the last fifteen years; only the pair kernel is compiled for
-# newer ones as well.
+# Programs run on any x86-64 processor of the last fifteen years; only the kernels are compiled for newer
+# ones as well.
 ifeq ($(shell uname -m),x86_64)
 march = -march=x86-64-v2
 kernel_isas = v2 v3 v4
-kernel_flags_v2 = -DPAIR_KERNEL_ISA=2 -march=x86-64-v2
-kernel_flags_v3 = -DPAIR_KERNEL_ISA=3 -march=x86-64-v3
-kernel_flags_v4 = -DPAIR_KERNEL_ISA=4 -march=x86-64-v4 -mprefer-vector-width=512
+kernel_flags_v2 = -DKERNEL_ISA=2 -march=x86-64-v2
+kernel_flags_v3 = -DKERNEL_ISA=3 -march=x86-64-v3
+kernel_flags_v4 = -DKERNEL_ISA=4 -march=x86-64-v4 -mprefer-vector-width=512
 else
 kernel_isas = generic
-kernel_flags_generic = -DPAIR_KERNEL_ISA=0
+kernel_flags_generic = -DKERNEL_ISA=0
 endif
 
 CFLAGS = -std=c11 $(warnings) $(compiler_warnings) $(if $(WERROR),-Werror) $(numerics) $(flavour_flags)

@@ -12,6 +12,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/isa.h"
 #include "contact/contact_set.h"
 #include "model/material.h"
 #include "model/sphere.h"
@@ -47,31 +48,15 @@ struct pair_kernel_work {
     double overlap_max;                /* out: largest overlap (1/R_i + 1/R_j) / 2 [-] */
 };
 
-/* Instruction sets, by what they ask of the processor: v2, v3 and v4 are the levels of
- * x86-64. */
-enum pair_kernel_isa {
-    PAIR_KERNEL_AUTO, /* the widest that runs */
-    PAIR_KERNEL_GENERIC,
-    PAIR_KERNEL_V2,
-    PAIR_KERNEL_V3,
-    PAIR_KERNEL_V4,
-    PAIR_KERNEL_N_ISAS,
-};
-
 struct pair_kernel {
-    enum pair_kernel_isa isa;
+    enum isa isa;
     void (*apply)(struct pair_kernel_work *work);
 };
-
-/* "auto", "generic", "v2", "v3", "v4": what --isa takes. */
-const char *pair_kernel_isa_name(enum pair_kernel_isa isa);
-/* Whether this program holds that kernel and this processor runs it. */
-bool pair_kernel_isa_runs(enum pair_kernel_isa isa);
 
 /* The kernel for spheres all of one material (uniform) or of several; with rolling, twisting
  * and static friction (full) or without; with or without the energy ledger.  The instruction
  * set must run. */
-struct pair_kernel pair_kernel_choose(enum pair_kernel_isa isa, bool uniform, bool full,
+struct pair_kernel pair_kernel_choose(enum isa isa, bool uniform, bool full,
                                       bool ledger);
 
 #endif

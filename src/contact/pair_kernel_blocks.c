@@ -1,12 +1,11 @@
 /*
  * The pair kernel, in blocks of as many pairs as a vector has lanes.
  *
- * Compiled once for each instruction set, PAIR_KERNEL_ISA = 0 (generic), 2, 3, 4: see
- * config/compiler.  A sphere's data are rows of one cache line, so a block loads whole rows,
- * subtracts or adds the two of each pair, transposes them so that each component of all pairs
- * lies in one vector, applies the law, transposes the forces back and adds whole rows.  That is
- * twice as fast as gathering components, and leaves no scalar remainder: lists are padded with
- * dummies.
+ * Compiled once for each instruction set (base/isa.h).  A sphere's data are rows of one cache
+ * line, so a block loads whole rows, subtracts or adds the two of each pair, transposes them so
+ * that each component of all pairs lies in one vector, applies the law, transposes the forces
+ * back and adds whole rows.  That is twice as fast as gathering components, and leaves no
+ * scalar remainder: lists are padded with dummies.
  *
  * Rows of second members jump about in memory; they are fetched some blocks ahead, which more
  * than doubles the speed once the spheres outgrow the cache.
@@ -18,72 +17,15 @@
 #include "contact/pair_kernel_blocks.h"
 
 #include "contact/pair_kernel.h"
-
-#if PAIR_KERNEL_ISA == 4
-#define LANES_WIDTH        8
-#define PAIR_KERNEL_BLOCKS pair_kernel_blocks_v4
-#elif PAIR_KERNEL_ISA == 3
-#define LANES_WIDTH        4
-#define PAIR_KERNEL_BLOCKS pair_kernel_blocks_v3
-#elif PAIR_KERNEL_ISA == 2
-#define LANES_WIDTH        2
-#define PAIR_KERNEL_BLOCKS pair_kernel_blocks_v2
-#else
-#define LANES_WIDTH        2
-#define PAIR_KERNEL_BLOCKS pair_kernel_blocks_generic
-#endif
-
 #include "physics/contact_law.h"
+#include "physics/lanes_rows.h"
 
 enum {
     WIDTH = LANES_WIDTH,
-    PARTS = 8 / WIDTH, /* vectors in a row */
-    AHEAD = 32,        /* pairs; half as many and twice as many are as good */
+    PARTS = LANES_PARTS,
+    AHEAD = 32, /* pairs; half as many and twice as many are as good */
 };
 _Static_assert(AHEAD + WIDTH <= PAIR_KERNEL_AHEAD, "rows are fetched from within the list");
-
-#define SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
-
-/* WIDTH rows or columns of a square, in place. */
-LANES_INLINE void transpose_square(lanes *r)
-{
-#if LANES_WIDTH == 2
-    const lanes a = SHUFFLE(r[0], r[1], 0, 2), b = SHUFFLE(r[0], r[1], 1, 3);
-    r[0] = a;
-    r[1] = b;
-#elif LANES_WIDTH == 4
-    const lanes a0 = SHUFFLE(r[0], r[1], 0, 4, 2, 6), a1 = SHUFFLE(r[0], r[1], 1, 5, 3, 7);
-    const lanes a2 = SHUFFLE(r[2], r[3], 0, 4, 2, 6), a3 = SHUFFLE(r[2], r[3], 1, 5, 3, 7);
-    r[0] = SHUFFLE(a0, a2, 0, 1, 4, 5);
-    r[1] = SHUFFLE(a1, a3, 0, 1, 4, 5);
-    r[2] = SHUFFLE(a0, a2, 2, 3, 6, 7);
-    r[3] = SHUFFLE(a1, a3, 2, 3, 6, 7);
-#else
-    lanes a[8], b[8];
-#pragma GCC unroll 8
-    for (int k = 0; k < 8; k += 2) { /* squares of 1 x 1 change places */
-        a[k] = SHUFFLE(r[k], r[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
-        a[k + 1] = SHUFFLE(r[k], r[k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
-    }
-#pragma GCC unroll 8
-    for (int k = 0; k < 8; k++) /* of 2 x 2 */
-        b[k] = k & 2 ? SHUFFLE(a[k - 2], a[k], 2, 3, 10, 11, 6, 7, 14, 15)
-                     : SHUFFLE(a[k], a[k + 2], 0, 1, 8, 9, 4, 5, 12, 13);
-#pragma GCC unroll 8
-    for (int k = 0; k < 8; k++) /* of 4 x 4 */
-        r[k] = k & 4 ? SHUFFLE(b[k - 4], b[k], 4, 5, 6, 7, 12, 13, 14, 15)
-                     : SHUFFLE(b[k], b[k + 4], 0, 1, 2, 3, 8, 9, 10, 11);
-#endif
-}
-
-/* From WIDTH rows, part p of row l at r[WIDTH p + l], to 8 components, component c at r[c]; and
- * back. */
-LANES_INLINE void transpose(lanes r[8])
-{
-#pragma GCC unroll 4
-    for (int part = 0; part < PARTS; part++)
-        transpose_square(r + WIDTH * part);
-}
 
 /* Rows are found by their distance from the first [bytes]: worked out once a pair, it serves
  * three arrays. */
@@ -132,12 +74,12 @@ LANES_INLINE void block_load(struct block *block, const struct pair_kernel_work 
                     row_part(work->spin, j, part) - row_part(work->spin, i, part);
         }
     }
-    transpose(block->motion);
-    transpose(block->spin);
+    lanes_transpose(block->motion);
+    lanes_transpose(block->spin);
     if (full)
 #pragma GCC unroll 4
         for (int part = TURNING; part < PARTS; part++)
-            transpose_square(block->turning + WIDTH * part);
+            lanes_transpose_square(block->turning + WIDTH * part);
 }
 
 LANES_INLINE void fetch_ahead(const struct pair_kernel_work *work, int k)
@@ -211,10 +153,10 @@ LANES_INLINE void block_rows(const struct block *block,
     }
     first[3] = second[3] = choice.ledger ? 0.5 * result->lost_friction : lanes_all(0.0);
     first[7] = second[7] = choice.ledger ? 0.5 * result->lost_damping : lanes_all(0.0);
-    transpose(second);
+    lanes_transpose(second);
 #pragma GCC unroll 4
     for (int part = FORCE_APART ? PARTS / 2 : 0; part < PARTS; part++)
-        transpose_square(first + WIDTH * part);
+        lanes_transpose_square(first + WIDTH * part);
 }
 
 /* A part of the second's force turned round; the energy in lane 3 is the same for both. */
@@ -326,7 +268,8 @@ APPLY(apply_uniform_ledger, true, .ledger = true)
 APPLY(apply_uniform_full, true, .full = true)
 APPLY(apply_uniform_full_ledger, true, .full = true, .ledger = true)
 
-struct pair_kernel_blocks PAIR_KERNEL_BLOCKS(void) {
+struct pair_kernel_blocks ISA_OFFER(pair_kernel_blocks)(void)
+{
     return (struct pair_kernel_blocks){
         {{{apply_mixed, apply_mixed_ledger}, {apply_mixed_full, apply_mixed_full_ledger}},
          {{apply_uniform, apply_uniform_ledger},

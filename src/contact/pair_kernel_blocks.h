@@ -2,15 +2,14 @@
 #ifndef TREMIE_CONTACT_PAIR_KERNEL_BLOCKS_H
 #define TREMIE_CONTACT_PAIR_KERNEL_BLOCKS_H
 
+#include "base/isa.h"
+
 struct pair_kernel_work;
 
 struct pair_kernel_blocks {
     void (*apply[2][2][2])(struct pair_kernel_work *work); /* [uniform][full][ledger] */
 };
 
-struct pair_kernel_blocks pair_kernel_blocks_generic(void);
-struct pair_kernel_blocks pair_kernel_blocks_v2(void);
-struct pair_kernel_blocks pair_kernel_blocks_v3(void);
-struct pair_kernel_blocks pair_kernel_blocks_v4(void);
+ISA_DECLARE(struct pair_kernel_blocks, pair_kernel_blocks);
 
 #endif

@@ -8,6 +8,7 @@
 
 #include <stdbool.h>
 
+#include "base/isa.h"
 #include "model/sphere.h"
 
 struct integrate_work {
@@ -25,7 +26,12 @@ struct integrate_work {
     bool bad;        /* some place or velocity is NaN or infinite */
 };
 
-/* Moves n spheres by one step and clears their force rows.  Local. */
-void integrate_spheres(struct integrate_work *work);
+/* Moves n spheres by one step and clears their force rows: apply(work).  Local. */
+struct integrate_kernel {
+    void (*apply)(struct integrate_work *work);
+};
+
+/* The kernel for an instruction set, which must run; all give the same bits. */
+struct integrate_kernel integrate_choose(enum isa isa);
 
 #endif

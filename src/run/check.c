@@ -536,7 +536,7 @@ static void print_start(const struct job *job, const struct comm *comm)
 {
     struct simulation sim;
     char what[160];
-    if (simulation_create(&sim, comm, job, PAIR_KERNEL_AUTO) != REPORT_FINISHED)
+    if (simulation_create(&sim, comm, job, ISA_AUTO) != REPORT_FINISHED)
         return;
     step_forces(&sim);
     survey_warn(job, &sim.bodies, &sim.spheres, comm);

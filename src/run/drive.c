@@ -102,7 +102,7 @@ static void describe_run(const struct drive *drive)
     char host[128] = "";
     (void)gethostname(host, sizeof host - 1);
     report_note("tremie %s, %d ranks, first on %s, kernel %s", TREMIE_VERSION,
-                drive->comm->n_ranks, host, pair_kernel_isa_name(drive->sim.kernel.isa));
+                drive->comm->n_ranks, host, isa_name(drive->sim.kernel.isa));
 }
 
 /* Does the checkpoint belong to this job?  On rank 0, which says what differs. */

@@ -26,11 +26,11 @@ static const struct {
 
 static bool read_isa(struct options *options, const char *name)
 {
-    for (int isa = 0; isa < PAIR_KERNEL_N_ISAS; isa++) {
-        if (strcmp(name, pair_kernel_isa_name((enum pair_kernel_isa)isa)) != 0)
+    for (int isa = 0; isa < ISA_N; isa++) {
+        if (strcmp(name, isa_name((enum isa)isa)) != 0)
             continue;
-        options->isa = (enum pair_kernel_isa)isa;
-        if (pair_kernel_isa_runs(options->isa))
+        options->isa = (enum isa)isa;
+        if (isa_runs(options->isa))
             return true;
         report_error("--isa %s does not run here (processor or build lacks it); use --isa auto",
                      name);

@@ -26,7 +26,7 @@ struct options {
     const char *out;     /* NULL: runs/NAME */
     const char *restart; /* NULL: the newest good checkpoint */
     bool fresh;
-    enum pair_kernel_isa isa;
+    enum isa isa;
     int n_overrides;
     struct job_override *overrides;
 };

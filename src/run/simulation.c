@@ -104,7 +104,7 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
 }
 
 /* Spheres are here in some order: complete them, choose kernels, distribute and search. */
-static void finish(struct simulation *sim, enum pair_kernel_isa isa)
+static void finish(struct simulation *sim, enum isa isa)
 {
     for (int i = 0; i < sim->spheres.n_owned; i++)
         sphere_complete(&sim->spheres, i, &sim->materials);
@@ -112,6 +112,7 @@ static void finish(struct simulation *sim, enum pair_kernel_isa isa)
     comm_sum_int(sim->comm, &sim->n_spheres, 1);
     sim->kernel = pair_kernel_choose(isa, one_material(sim), sim->materials.full,
                                      sim->job->energy_ledger);
+    sim->integrate = integrate_choose(isa);
     sim->half_buffer = choose_half_buffer(sim);
     runtime_init(&sim->runtime, sim->step);
     bodies_place(&sim->bodies, sim->step, sim->dt);
@@ -182,7 +183,7 @@ static bool open_chain(struct chain *chain, const struct job *job)
 }
 
 int simulation_create(struct simulation *sim, const struct comm *comm, const struct job *job,
-                      enum pair_kernel_isa isa)
+                      enum isa isa)
 {
     struct chain chain;
     int status = comm_agree(comm, open_chain(&chain, job) ? REPORT_FINISHED : REPORT_BAD_INPUT);
@@ -257,7 +258,7 @@ static bool fits_job(const struct simulation *sim, const struct checkpoint *chec
 }
 
 int simulation_restart(struct simulation *sim, const struct comm *comm, const struct job *job,
-                       enum pair_kernel_isa isa, const char *checkpoint_path)
+                       enum isa isa, const char *checkpoint_path)
 {
     begin(sim, comm, job);
     struct checkpoint checkpoint = {.spheres = &sim->spheres,

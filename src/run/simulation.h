@@ -19,6 +19,7 @@
 #include "model/body.h"
 #include "model/material.h"
 #include "model/sphere.h"
+#include "physics/integrate.h"
 #include "run/capture.h"
 #include "run/contents.h"
 #include "run/forced.h"
@@ -61,6 +62,7 @@ struct simulation {
     double
         *body_allowance; /* how far each body's surface may move before a search is due [m] */
     struct pair_kernel kernel;
+    struct integrate_kernel integrate;
     double
         overlap_max; /* largest overlap over radius in the last step, of pairs, on this rank */
 
@@ -90,10 +92,10 @@ struct simulation {
  * the reason said, when what the job starts from cannot be read; then there is nothing to
  * destroy.  Collective. */
 int simulation_create(struct simulation *sim, const struct comm *comm, const struct job *job,
-                      enum pair_kernel_isa isa);
+                      enum isa isa);
 /* The same from a checkpoint.  Returns a REPORT_ status, the reason said.  Collective. */
 int simulation_restart(struct simulation *sim, const struct comm *comm, const struct job *job,
-                       enum pair_kernel_isa isa, const char *checkpoint_path);
+                       enum isa isa, const char *checkpoint_path);
 void simulation_destroy(struct simulation *sim);
 
 /* Writes series and checkpoint of the present step into the folder and drops old checkpoints.

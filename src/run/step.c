@@ -102,7 +102,7 @@ static void integrate(struct simulation *sim, double spent[2], bool *bad)
     };
     for (int k = 0; k < 3; k++)
         work.snap[k] = spheres->periodic.snap[k];
-    integrate_spheres(&work);
+    sim->integrate.apply(&work);
     for (int i = spheres->n_owned; i < spheres->n_all; i++)
         spheres->force[i] =
             (struct sphere_row){{0.0}}; /* what ghosts feel is their owner's business */

@@ -113,7 +113,7 @@ static struct limit come_to_rest(struct rest *rest, int n_steps)
     struct simulation sim;
     struct limit limit = {.rayleigh = 1e300};
     const struct run_folder folder = {.path = rest->folder, .lock = -1};
-    simulation_create(&sim, rest->comm, &rest->job, PAIR_KERNEL_AUTO);
+    simulation_create(&sim, rest->comm, &rest->job, ISA_AUTO);
     run_steps(&sim, n_steps);
     rest->job.damping *= 3.0; /* what has fallen comes to rest */
     do {
@@ -169,7 +169,7 @@ static bool is_stable(struct rest *rest, double dt)
 {
     struct simulation sim;
     rest->job.time.step = dt;
-    CHECK(simulation_restart(&sim, rest->comm, &rest->job, PAIR_KERNEL_AUTO,
+    CHECK(simulation_restart(&sim, rest->comm, &rest->job, ISA_AUTO,
                              rest->checkpoint) == REPORT_FINISHED,
           "cannot restart");
     push_spheres(&sim, rest);

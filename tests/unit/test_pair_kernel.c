@@ -105,7 +105,7 @@ static void look(const struct scene *before, const struct scene *after, struct s
         seen->sliding += after->force[i].lane[3] > 0.0;
 }
 
-static void compare(enum pair_kernel_isa isa, bool uniform, struct contact_law_choice choice,
+static void compare(enum isa isa, bool uniform, struct contact_law_choice choice,
                     struct seen *seen)
 {
     const struct pair_kernel kernel =
@@ -124,7 +124,7 @@ static void compare(enum pair_kernel_isa isa, bool uniform, struct contact_law_c
         expected.overlap_max = work.overlap_max;
         scene_apply(&got, kernel.apply);
         if (scene_difference(&expected, &got) != NULL)
-            CHECK_FAIL("%s: step %d: %s differs", pair_kernel_isa_name(isa), step,
+            CHECK_FAIL("%s: step %d: %s differs", isa_name(isa), step,
                        scene_difference(&expected, &got));
         look(&before, &got, seen);
         scene_move(&expected);
@@ -134,12 +134,12 @@ static void compare(enum pair_kernel_isa isa, bool uniform, struct contact_law_c
 
 TEST(all_instruction_sets_give_the_bits_of_single_contacts)
 {
-    for (int isa = PAIR_KERNEL_GENERIC; isa < PAIR_KERNEL_N_ISAS; isa++) {
+    for (int isa = ISA_GENERIC; isa < ISA_N; isa++) {
         struct seen seen = {0};
-        if (!pair_kernel_isa_runs((enum pair_kernel_isa)isa))
+        if (!isa_runs((enum isa)isa))
             continue;
         for (int choice = 0; choice < 8; choice++)
-            compare((enum pair_kernel_isa)isa, choice & 1,
+            compare((enum isa)isa, choice & 1,
                     (struct contact_law_choice){.full = choice & 2, .ledger = choice & 4},
                     &seen);
         EXPECT(seen.touching > 1000 && seen.apart > 1000);
@@ -152,8 +152,8 @@ TEST(all_instruction_sets_give_the_bits_of_single_contacts)
 TEST(ledger_changes_no_force)
 {
     static struct scene with, without;
-    const struct pair_kernel ledger = pair_kernel_choose(PAIR_KERNEL_AUTO, false, true, true);
-    const struct pair_kernel plain = pair_kernel_choose(PAIR_KERNEL_AUTO, false, true, false);
+    const struct pair_kernel ledger = pair_kernel_choose(ISA_AUTO, false, true, true);
+    const struct pair_kernel plain = pair_kernel_choose(ISA_AUTO, false, true, false);
 
     scene_fill(&with, 3);
     scene_fill(&without, 3);
@@ -175,7 +175,7 @@ TEST(ledger_changes_no_force)
 TEST(antisymmetric)
 {
     static struct scene one, other;
-    const struct pair_kernel kernel = pair_kernel_choose(PAIR_KERNEL_AUTO, false, true, true);
+    const struct pair_kernel kernel = pair_kernel_choose(ISA_AUTO, false, true, true);
 
     scene_fill(&one, 5);
     one.n = 1;
@@ -204,8 +204,8 @@ TEST(apart_nothing_is_written_but_plus_zero)
     static struct scene scene;
     static const struct sphere_row nothing[SCENE_SPHERES + 2];
 
-    for (int isa = PAIR_KERNEL_GENERIC; isa < PAIR_KERNEL_N_ISAS; isa++) {
-        if (!pair_kernel_isa_runs((enum pair_kernel_isa)isa))
+    for (int isa = ISA_GENERIC; isa < ISA_N; isa++) {
+        if (!isa_runs((enum isa)isa))
             continue;
         scene_fill(&scene, 7);
         for (int i = 0; i < SCENE_SPHERES; i++)
@@ -215,7 +215,7 @@ TEST(apart_nothing_is_written_but_plus_zero)
                 if (contact_lane_used(lane, true, false))
                     scene.history[lane][k] = lane == CONTACT_RADIUS_LANE ? 1e-4 : -1.0 - k;
         scene_apply(&scene,
-                    pair_kernel_choose((enum pair_kernel_isa)isa, false, true, false).apply);
+                    pair_kernel_choose((enum isa)isa, false, true, false).apply);
         EXPECT(memcmp(scene.force, nothing, sizeof scene.force) == 0);
         for (int lane = 0; lane < CONTACT_LANES; lane++)
             for (int k = 0; k < scene.n_padded; k++)
@@ -230,16 +230,16 @@ TEST(no_pairs_is_fine)
     scene_fill(&scene, 1);
     scene.n_padded = 0;
     scene.overlap_max = 1.0;
-    scene_apply(&scene, pair_kernel_choose(PAIR_KERNEL_AUTO, true, true, true).apply);
+    scene_apply(&scene, pair_kernel_choose(ISA_AUTO, true, true, true).apply);
     EXPECT(scene.overlap_max == 0.0);
 }
 
 TEST(instruction_sets_have_names)
 {
-    EXPECT_STRING(pair_kernel_isa_name(PAIR_KERNEL_AUTO), "auto");
-    EXPECT_STRING(pair_kernel_isa_name(PAIR_KERNEL_V3), "v3");
-    EXPECT(pair_kernel_isa_runs(PAIR_KERNEL_AUTO));
-    EXPECT(pair_kernel_choose(PAIR_KERNEL_AUTO, true, true, true).isa != PAIR_KERNEL_AUTO);
+    EXPECT_STRING(isa_name(ISA_AUTO), "auto");
+    EXPECT_STRING(isa_name(ISA_V3), "v3");
+    EXPECT(isa_runs(ISA_AUTO));
+    EXPECT(pair_kernel_choose(ISA_AUTO, true, true, true).isa != ISA_AUTO);
 }
 
 int main(int argc, char **argv)

@@ -502,7 +502,7 @@ static struct seen compare_runs(const struct job *job, int n_steps)
     struct reference reference;
     struct seen seen = {0};
     reference_start(&reference, job);
-    simulation_create(&sim, &comm, job, PAIR_KERNEL_AUTO);
+    simulation_create(&sim, &comm, job, ISA_AUTO);
     for (int n = 0; n < n_steps; n++) {
         step(&sim);
         reference_step(&reference);
@@ -783,7 +783,7 @@ static void run_gas(struct vec3 shift, struct gas *start, struct gas *end)
     }
     read_job(&job, text.bytes);
     free(text.bytes);
-    simulation_create(&sim, &comm, &job, PAIR_KERNEL_AUTO);
+    simulation_create(&sim, &comm, &job, ISA_AUTO);
     see_gas(&sim, start);
     for (int n = 0; n < 600; n++)
         step(&sim);

@@ -50,7 +50,7 @@ static enum watch_failure failure_after(const struct job *job, const struct plan
 {
     const struct comm comm = comm_world();
     struct simulation sim;
-    simulation_create(&sim, &comm, job, PAIR_KERNEL_AUTO);
+    simulation_create(&sim, &comm, job, ISA_AUTO);
     for (int k = 0; k < 3; k++)
         step(&sim);
     EXPECT(sim.watch.failure == WATCH_FINE);

@@ -144,7 +144,7 @@ struct simulation *verify_scene(double dt, const char *yaml_format, ...)
     char *text = array_format("time: {end: %.17g, step: %.17g}\n%s", 1e12 * dt, dt, rest);
     struct scene *scene = array_allocate(1, sizeof *scene);
     read_job(&scene->job, text, false);
-    simulation_create(&scene->sim, &verify.comm, &scene->job, PAIR_KERNEL_AUTO);
+    simulation_create(&scene->sim, &verify.comm, &scene->job, ISA_AUTO);
     free(rest);
     free(text);
     return &scene->sim;
