@@ -1,10 +1,12 @@
 /*
  * Contacts of spheres with rigid bodies: see facet_contact.h.
  *
- * Each step goes through the list sphere by sphere and body by body. The local search says
- * which contacts of such a group act; these, and those that end, are gathered into a batch, in
- * order, for which the law is then taken at once; what comes of it is added contact by contact
- * in the same order. So neither the list nor the size of a batch shows in the result.
+ * Spheres that may only touch one face of one body are put together face by face, and the
+ * kernel finds out for whole vectors of them whether they do. Of all others each step goes
+ * through the list sphere by sphere and body by body. The local search says which contacts of
+ * such a group act; these, and those that end, are gathered into a batch, in order, for which
+ * the law is then taken at once; what comes of it is added contact by contact in the same
+ * order. So neither the list nor the size of a batch shows in the result.
  *
  * Where facets are finer than spheres, a group is long, and most of it is too far to touch
  * within the next steps. So each long group knows which of its entries are near, and looks at
@@ -17,7 +19,6 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "base/exact_four.h"
 #include "base/report.h"
 #include "contact/facet_kernel.h"
 #include "contact/facet_local.h"
@@ -28,21 +29,6 @@
 #include "model/sphere.h"
 #include "physics/contact_geometry.h"
 #include "physics/contact_law.h"
-
-enum { MERGE_AFTER = 1 << 20 }; /* terms that quick sums hold at most */
-
-/* Whose a contact of the batch is, and where. */
-struct acting {
-    int entry, sphere, body;
-    struct vec3 point; /* [m] */
-    struct vec3 wall;  /* velocity of the body there [m/s] */
-    struct vec3 turns; /* angular velocity of the body [rad/s] */
-};
-
-/* Quick sums of a body: force and nothing, torque and work. */
-struct quick_load {
-    struct exact_four force, torque;
-};
 
 /* The entries of a sphere with a body, begin to end of the list; `near` numbers those from
  * begin on that may touch until the two have moved by `slack`. */
@@ -60,10 +46,16 @@ struct facet_work {
     int next_capacity;
     struct facet_contact *next; /* the list that is being made */
     struct facet_local local;
+    enum isa isa;
     struct facet_kernel_batch batch;
-    struct acting acting[FACET_KERNEL_BATCH];
-    struct quick_load *loads; /* one a body */
-    bool has_groups;
+    struct facet_kernel_load *loads; /* one a body */
+    int n_summed;                    /* contacts in them, at most */
+    struct facet_contact dummy;
+    bool has_groups; /* and runs */
+    int n_runs, run_capacity, n_plain, plain_capacity, faced_capacity;
+    struct facet_kernel_run *runs;
+    struct facet_contact **plain; /* contacts that may only touch one face */
+    struct facet_contact **faced; /* those in runs, padded */
     int n_groups, group_capacity, near_capacity;
     struct group *groups;
     int *near;         /* of all groups, each at its entries' places */
@@ -75,9 +67,8 @@ struct step {
     struct facet_contacts *facets;
     struct spheres *spheres;
     const struct bodies *bodies;
-    const struct materials *materials;
-    double dt;
-    bool ledger;
+    struct facet_kernel kernel;
+    struct facet_kernel_work *kernel_work;
 };
 
 static bool holds_history(const struct facet_contact *contact)
@@ -90,13 +81,14 @@ static struct vec3 vec3_of(const double *lane)
     return (struct vec3){lane[0], lane[1], lane[2]};
 }
 
-void facet_contacts_init(struct facet_contacts *facets, int n_bodies)
+void facet_contacts_init(struct facet_contacts *facets, int n_bodies, enum isa isa)
 {
     *facets = (struct facet_contacts){.n_bodies = n_bodies};
     facets->loads = array_allocate((size_t)n_bodies, sizeof *facets->loads);
     facets->work = array_allocate_rows(1, sizeof *facets->work);
     facets->work->trees = array_allocate((size_t)n_bodies, sizeof *facets->work->trees);
-    facets->work->loads = array_allocate((size_t)n_bodies, sizeof *facets->work->loads);
+    facets->work->loads = array_allocate_rows((size_t)n_bodies, sizeof *facets->work->loads);
+    facets->work->isa = isa_choose(isa);
     facets->work->travelled = array_allocate((size_t)n_bodies, sizeof(double));
 }
 
@@ -110,6 +102,9 @@ void facet_contacts_clear(struct facet_contacts *facets)
     free(work->across.features);
     free(work->next);
     free(work->loads);
+    free(work->runs);
+    free(work->plain);
+    free(work->faced);
     free(work->groups);
     free(work->near);
     free(work->travelled);
@@ -357,96 +352,49 @@ void facet_contacts_restore(struct facet_contacts *facets, int n,
 /* ---- Step
  * ------------------------------------------------------------------------------------- */
 
-static double size_of(double x)
-{
-    return x < 0.0 ? -x : x;
-}
-
+/* What bodies felt in this step so far goes to their loads. */
 static void merge_loads(struct facet_contacts *facets, int b)
 {
-    struct quick_load *quick = &facets->work->loads[b];
+    struct facet_kernel_load *step = &facets->work->loads[b];
     struct body_load *load = &facets->loads[b];
     for (int x = 0; x < 3; x++) {
-        exact_four_merge(&quick->force, x, &load->force[x]);
-        exact_four_merge(&quick->torque, x, &load->torque[x]);
+        lanes_exact_merge(&step->sums[x], step->n_terms, &load->force[x]);
+        lanes_exact_merge(&step->sums[3 + x], step->n_terms, &load->torque[x]);
     }
-    exact_four_merge(&quick->torque, 3, &load->work);
-    memset(quick, 0, sizeof *quick);
+    lanes_exact_merge(&step->sums[6], step->n_terms, &load->work);
+    load->force[0].overflow += step->n_overflow;
+    step->n_terms = step->n_overflow = 0;
 }
 
-/* Gives a body the force on it, its torque (`twist` besides the force's) and the work of its
- * motion. `force` becomes what the exact sums took, so that the sphere's is the opposite to the
- * last bit. */
-static void load_body(const struct step *step, const struct acting *acting, double force[4],
-                      struct vec3 twist)
+static void merge_all_loads(struct facet_contacts *facets)
 {
-    struct quick_load *load = &step->facets->work->loads[acting->body];
-    const struct vec3 p = acting->point, path = vec3_scale(step->dt, acting->wall);
-    const double size = size_of(force[0]) + size_of(force[1]) + size_of(force[2]);
-    const double arm = size_of(p.x) + size_of(p.y) + size_of(p.z);
-    const double way = size_of(path.x) + size_of(path.y) + size_of(path.z);
-    const struct vec3 turn = vec3_scale(step->dt, acting->turns);
-    const double twists = (size_of(twist.x) + size_of(twist.y) + size_of(twist.z)) *
-                          (1.0 + size_of(turn.x) + size_of(turn.y) + size_of(turn.z));
-    if (!(size * (1.0 + arm + way) + twists < EXACT_FOUR_LIMIT)) {
-        /* Something has run away: the sum takes note of it, as it does of single terms. */
-        step->facets->loads[acting->body].force[0].overflow++;
-        force[0] = force[1] = force[2] = 0.0;
-        return;
-    }
-    exact_four_add(&load->force, force, force);
-    const struct vec3 taken = {force[0], force[1], force[2]};
-    const struct vec3 torque = vec3_add(vec3_cross(p, taken), twist);
-    double others[4] = {torque.x, torque.y, torque.z,
-                        -vec3_dot(taken, path) - vec3_dot(twist, turn)};
-    exact_four_add(&load->torque, others, others);
-    if (load->force.n_terms >= MERGE_AFTER)
-        merge_loads(step->facets, acting->body);
+    for (int b = 0; b < facets->n_bodies; b++)
+        if (facets->work->loads[b].n_terms > 0)
+            merge_loads(facets, b);
+    facets->work->n_summed = 0;
 }
 
-/* Adds what contact k of the batch does to its sphere and its body. */
-static void press(const struct step *step, int k)
+/* Before n more contacts, so that no sum is filled. */
+static void make_room(struct facet_contacts *facets, int n)
 {
-    const struct facet_kernel_batch *batch = &step->facets->work->batch;
-    const struct acting *acting = &step->facets->work->acting[k];
-    const int i = acting->sphere;
-    const struct vec3 n = {batch->normal[0][k], batch->normal[1][k], batch->normal[2][k]};
-    const struct vec3 grip = {batch->grip[0][k], batch->grip[1][k], batch->grip[2][k]};
-    const struct vec3 torque =
-        vec3_scale(-sphere_radius(step->spheres, i), vec3_cross(n, grip));
-    double force[4] = {batch->push[k] * n.x + grip.x, batch->push[k] * n.y + grip.y,
-                       batch->push[k] * n.z + grip.z, 0.0}; /* on the body [N] */
-    struct vec3 twist = {0.0, 0.0, 0.0};                    /* on the body [N m] */
-    if (step->materials->full)
-        twist = (struct vec3){batch->torque[0][k], batch->torque[1][k], batch->torque[2][k]};
-    load_body(step, acting, force, twist);
-
-    double *row = step->spheres->force[i].lane;
-    row[0] -= force[0];
-    row[1] -= force[1];
-    row[2] -= force[2];
-    row[4] += torque.x - twist.x;
-    row[5] += torque.y - twist.y;
-    row[6] += torque.z - twist.z;
-    if (step->ledger) {
-        row[3] += batch->lost_friction[k];
-        row[7] += batch->lost_damping[k];
-        step->spheres->dissipated_tangential[i] += batch->lost_law[k];
-    }
-    struct facet_contact *contact = &step->facets->list[acting->entry];
-    contact->overlap = batch->overlap[k];
-    for (int h = 0; h < CONTACT_LANES; h++)
-        if (contact_lane_used(h, step->materials->full, step->ledger))
-            contact->history[h] = batch->history[h][k];
+    if (facets->work->n_summed + n > LANES_EXACT_TERMS)
+        merge_all_loads(facets);
+    facets->work->n_summed += n;
 }
 
 static void empty_batch(const struct step *step)
 {
     struct facet_kernel_batch *batch = &step->facets->work->batch;
-    facet_kernel_apply(batch, step->dt, step->materials->full, step->ledger);
-    for (int k = 0; k < batch->n; k++)
-        press(step, k);
-    batch->n = 0;
+    if (batch->n == 0)
+        return;
+    make_room(step->facets, batch->n);
+    step->kernel.batch(step->kernel_work, batch);
+}
+
+static void apply_run(const struct step *step, const struct facet_kernel_run *run)
+{
+    make_room(step->facets, run->n);
+    step->kernel.run(step->kernel_work, run);
 }
 
 /* Puts a contact into the batch; one that ends has no overlap, and what its spring still held
@@ -454,50 +402,36 @@ static void empty_batch(const struct step *step)
 static void add_contact(const struct step *step, int entry, const struct contact_geometry *at,
                         double overlap)
 {
-    const struct spheres *spheres = step->spheres;
     struct facet_kernel_batch *batch = &step->facets->work->batch;
     if (batch->n == FACET_KERNEL_BATCH)
         empty_batch(step);
     const int k = batch->n++;
-    const struct facet_contact *contact = &step->facets->list[entry];
+    struct facet_contact *contact = &step->facets->list[entry];
     const struct body *body = &step->bodies->list[contact->body];
-    const struct material_pair *pair =
-        &step->materials
-             ->pairs[spheres->material[contact->sphere] * step->materials->n + body->material];
-    const double *spin = spheres->spin[contact->sphere].lane;
-    const struct vec3 normal = vec3_scale(-1.0, at->normal);       /* sphere to body */
-    const struct vec3 rolling = vec3_cross(vec3_of(spin), normal); /* R w x n [m/s] */
-    const struct vec3 surface =
-        vec3_add(vec3_of(sphere_velocity(spheres, contact->sphere)), rolling);
+    const struct facet_kernel_work *work = step->kernel_work;
+    const struct vec3 normal = vec3_scale(-1.0, at->normal); /* sphere to body */
     struct vec3 wall = {0.0, 0.0, 0.0}, turns = {0.0, 0.0, 0.0};
     if (body->moves || body->surface_runs) {
         wall = body_velocity(body, at->point, normal);
         turns = body_spin(body);
     }
-    const struct vec3 velocity = vec3_sub(wall, surface);
-    const double normals[3] = {normal.x, normal.y, normal.z};
-    const double velocities[3] = {velocity.x, velocity.y, velocity.z};
-    const double spins[3] = {turns.x - spin[4], turns.y - spin[5], turns.z - spin[6]};
-
-    step->facets->work->acting[k] =
-        (struct acting){entry, contact->sphere, contact->body, at->point, wall, turns};
+    const double values[4][3] = {{normal.x, normal.y, normal.z},
+                                 {at->point.x, at->point.y, at->point.z},
+                                 {wall.x, wall.y, wall.z},
+                                 {turns.x, turns.y, turns.z}};
+    batch->contact[k] = contact;
+    batch->sphere[k] = contact->sphere;
+    batch->load[k] = &step->facets->work->loads[contact->body];
+    batch->pair[k] =
+        &work->pairs[work->material[contact->sphere] * work->n_materials + body->material];
     for (int x = 0; x < 3; x++) {
-        batch->normal[x][k] = normals[x];
-        batch->velocity[x][k] = velocities[x];
-        batch->spin[x][k] = spins[x];
+        batch->normal[x][k] = values[0][x];
+        batch->point[x][k] = values[1][x];
+        batch->wall[x][k] = values[2][x];
+        batch->turns[x][k] = values[3][x];
     }
     batch->overlap[k] = overlap;
-    batch->inverse_radius[k] = spin[3];
-    batch->inverse_mass[k] = spin[7];
-    if (body->rigid != NULL)
-        batch->inverse_mass[k] += rigid_yield(body->rigid, at->point, normal);
-    batch->pair[k] = pair;
-    for (int h = 0; h < CONTACT_LANES; h++)
-        if (contact_lane_used(h, step->materials->full, step->ledger))
-            batch->history[h][k] = contact->history[h];
-    const double relative = overlap * spin[3];
-    if (relative > step->facets->overlap_max)
-        step->facets->overlap_max = relative;
+    batch->yield[k] = body->rigid != NULL ? rigid_yield(body->rigid, at->point, normal) : 0.0;
 }
 
 /* What a body that is not there still holds ends. */
@@ -517,23 +451,97 @@ static void end_group(const struct step *step, int begin, int end)
 /* ---- Groups
  * ----------------------------------------------------------------------------------- */
 
-enum { LONG_GROUP = 6 }; /* shorter ones are looked at as a whole */
+enum {
+    LONG_GROUP = 6,     /* shorter ones are looked at as a whole */
+    RUN_MOST = 1 << 16, /* contacts */
+};
 /* How far beyond touching counts as near: of the radius, and in steps of the present speed. */
 static const double NEAR_RADII = 0.05, NEAR_STEPS = 8.0;
 
-static void list_groups(struct facet_contacts *facets)
+static void add_group(struct facet_work *work, int begin, int end)
+{
+    ARRAY_GROW(work->groups, work->n_groups + 1, work->group_capacity);
+    work->groups[work->n_groups++] = (struct group){.begin = begin, .end = end, .slack = -1.0};
+}
+
+/* May the kernel find out by itself whether these touch, all that is listed of a sphere? */
+static bool are_plain(const struct facet_contact *entries, int n, const struct bodies *bodies)
+{
+    const struct body *body = &bodies->list[entries->body];
+    return n == 1 && entries->feature < body->mesh.n_faces && body->rigid == NULL &&
+           body->surface == NULL;
+}
+
+/* By face, then in order. */
+static int compare_plain(const void *a, const void *b)
+{
+    const struct facet_contact *const *p = a, *const *q = b;
+    if ((*p)->body != (*q)->body)
+        return (*p)->body < (*q)->body ? -1 : 1;
+    if ((*p)->feature != (*q)->feature)
+        return (*p)->feature < (*q)->feature ? -1 : 1;
+    return (*p > *q) - (*p < *q);
+}
+
+/* Makes runs of the plain contacts; those of faces with few go one by one. */
+static void list_runs(struct facet_contacts *facets, const struct bodies *bodies)
 {
     struct facet_work *work = facets->work;
-    const struct facet_contact *list = facets->list;
-    work->n_groups = 0;
+    int n = 0;
+    if (work->n_plain > 1)
+        qsort(work->plain, (size_t)work->n_plain, sizeof *work->plain, compare_plain);
+    /* Padding at most doubles a run. */
+    ARRAY_GROW(work->faced, 2 * work->n_plain + FACET_KERNEL_PAD, work->faced_capacity);
+    for (int k = 0, end; k < work->n_plain; k = end) {
+        const struct facet_contact *first = work->plain[k];
+        for (end = k + 1; end < work->n_plain; end++)
+            if (work->plain[end]->body != first->body ||
+                work->plain[end]->feature != first->feature || end - k == RUN_MOST)
+                break;
+        if (end - k < FACET_KERNEL_PAD / 2) {
+            for (int m = k; m < end; m++)
+                add_group(work, (int)(work->plain[m] - facets->list),
+                          (int)(work->plain[m] - facets->list) + 1);
+            continue;
+        }
+        struct facet_kernel_run run = {.body = &bodies->list[first->body],
+                                       .face = first->feature,
+                                       .contacts = work->faced + n,
+                                       .load = &work->loads[first->body]};
+        for (int m = k; m < end; m++)
+            work->faced[n++] = work->plain[m];
+        for (run.n = end - k; run.n % FACET_KERNEL_PAD != 0; run.n++)
+            work->faced[n++] = &work->dummy;
+        ARRAY_GROW(work->runs, work->n_runs + 1, work->run_capacity);
+        work->runs[work->n_runs++] = run;
+    }
+}
+
+/* Who is looked at in groups, and who in runs: a sphere's contacts with several bodies follow
+ * each other in the order of the list. */
+static void list_groups(struct facet_contacts *facets, const struct spheres *spheres,
+                        const struct bodies *bodies)
+{
+    struct facet_work *work = facets->work;
+    struct facet_contact *list = facets->list;
+    work->n_groups = work->n_runs = work->n_plain = 0;
+    work->dummy = (struct facet_contact){.sphere = spheres->n_all};
     ARRAY_GROW(work->near, facets->n, work->near_capacity);
     for (int k = 0, end; k < facets->n; k = end) {
-        for (end = k + 1; end < facets->n; end++)
-            if (list[end].sphere != list[k].sphere || list[end].body != list[k].body)
-                break;
-        ARRAY_GROW(work->groups, work->n_groups + 1, work->group_capacity);
-        work->groups[work->n_groups++] = (struct group){.begin = k, .end = end, .slack = -1.0};
+        for (end = k + 1; end < facets->n && list[end].sphere == list[k].sphere; end++)
+            continue;
+        if (are_plain(&list[k], end - k, bodies) && !spheres->periodic.any) {
+            ARRAY_GROW(work->plain, work->n_plain + 1, work->plain_capacity);
+            work->plain[work->n_plain++] = &list[k];
+            continue;
+        }
+        for (int begin = k, m = k + 1; m <= end; m++)
+            if (m == end || list[m].body != list[begin].body) {
+                add_group(work, begin, m);
+                begin = m;
+            }
     }
+    list_runs(facets, bodies);
     work->has_groups = true;
 }
 
@@ -551,8 +559,8 @@ static void look_around(const struct step *step, struct group *group, struct vec
     group->n_near = 0;
     group->from = centre;
     group->travelled = work->travelled[entries->body];
-    group->slack =
-        is_long ? NEAR_RADII * radius + NEAR_STEPS * step->dt * speed : (double)INFINITY;
+    group->slack = is_long ? NEAR_RADII * radius + NEAR_STEPS * step->kernel_work->dt * speed
+                           : (double)INFINITY;
     for (int k = 0; k < n; k++)
         if (!is_long || holds_history(&entries[k]) ||
             contact_geometry_reaches(&body->mesh, entries[k].feature, centre,
@@ -574,7 +582,7 @@ static void count_travel(const struct step *step)
     for (int b = 0; b < step->bodies->n; b++)
         if (step->bodies->list[b].moves)
             step->facets->work->travelled[b] +=
-                1.001 * step->bodies->list[b].speed_max * step->dt;
+                1.001 * step->bodies->list[b].speed_max * step->kernel_work->dt;
 }
 
 /* The contacts of one sphere with one body. */
@@ -626,12 +634,26 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
                           const struct bodies *bodies, const struct materials *materials,
                           double dt, bool ledger)
 {
-    const struct step step = {facets, spheres, bodies, materials, dt, ledger};
     struct facet_work *work = facets->work;
-    facets->overlap_max = 0.0;
+    struct facet_kernel_work kernel_work = {
+        .motion = spheres->motion,
+        .spin = spheres->spin,
+        .force = spheres->force,
+        .dissipated_tangential = spheres->dissipated_tangential,
+        .material = spheres->material,
+        .n_materials = materials->n,
+        .pairs = materials->pairs,
+        .dummy = &work->dummy,
+        .dt = dt,
+    };
+    const struct step step = {facets, spheres, bodies,
+                              facet_kernel_choose(work->isa, materials->full, ledger),
+                              &kernel_work};
     if (!work->has_groups)
-        list_groups(facets);
+        list_groups(facets, spheres, bodies);
     count_travel(&step);
+    for (int r = 0; r < work->n_runs; r++)
+        apply_run(&step, &work->runs[r]);
     for (int g = 0; g < work->n_groups; g++) {
         struct group *group = &work->groups[g];
         if (!bodies->list[facets->list[group->begin].body].exists)
@@ -642,9 +664,8 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
             gather_group(&step, group);
     }
     empty_batch(&step);
-    for (int b = 0; b < facets->n_bodies; b++)
-        if (facets->work->loads[b].force.n_terms > 0)
-            merge_loads(facets, b);
+    facets->overlap_max = kernel_work.overlap_max;
+    merge_all_loads(facets);
 }
 
 /* What the contact across a surface that goes stores half a step before: that is what is lost

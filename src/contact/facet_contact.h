@@ -28,6 +28,7 @@
 #include <stdint.h>
 
 #include "base/exact_sum.h"
+#include "base/isa.h"
 #include "base/vec3.h"
 #include "contact/contact_set.h"
 
@@ -36,11 +37,11 @@ struct bodies;
 struct materials;
 
 struct facet_contact {
-    int sphere; /* storage index of an owned sphere */
-    int body;
-    int feature; /* see model/mesh.h */
     double history[CONTACT_LANES];
     double overlap; /* of the last facet_contacts_apply(), for its energy; not state [m] */
+    int sphere;     /* storage index of an owned sphere */
+    int body;
+    int feature; /* see model/mesh.h */
 };
 
 /* By id: what migrates, is saved and compared (only touching ones). */
@@ -67,7 +68,7 @@ struct facet_contacts {
     struct facet_work *work; /* search trees and scratch, private to facet_contact.c */
 };
 
-void facet_contacts_init(struct facet_contacts *facets, int n_bodies);
+void facet_contacts_init(struct facet_contacts *facets, int n_bodies, enum isa isa);
 void facet_contacts_clear(struct facet_contacts *facets);
 
 /* Global search: lists the features near each owned sphere (storage order is canonical order),
@@ -98,7 +99,7 @@ void facet_contacts_restore(struct facet_contacts *facets, int n,
                             const int *sphere_of_record);
 
 /* Local search and law: adds forces and torques to spheres->force, updates history, body loads
- * and overlap_max. dt in s. Local. */
+ * and overlap_max. The spheres are padded (spheres_pad). dt in s. Local. */
 void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres,
                           const struct bodies *bodies, const struct materials *materials,
                           double dt, bool ledger);

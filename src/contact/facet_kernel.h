@@ -1,43 +1,87 @@
 /*
- * The contact law for a batch of contacts between spheres and facets.
+ * The contact law for contacts between spheres and facets, several at a time.
  *
- * Which facets a sphere touches is decided one by one; what then happens is the same arithmetic
- * for all, so contacts are gathered and the law is taken several at a time.
+ * Most spheres that touch a body touch one face of it and nothing else.  Those that may do so
+ * until the next search are put together in runs, face by face, and the kernel finds out for
+ * whole vectors of them whether and where they touch.  Whatever else may touch is decided one
+ * by one (contact/facet_local.h) and gathered into a batch, of which the kernel takes several
+ * at a time as well.  Either way the arithmetic is the same text, so who went which way shows
+ * nowhere.
  */
 #ifndef TREMIE_CONTACT_FACET_KERNEL_H
 #define TREMIE_CONTACT_FACET_KERNEL_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
+#include "base/isa.h"
 #include "contact/contact_set.h"
 #include "model/material.h"
+#include "model/sphere.h"
+#include "physics/lanes_exact.h"
 
-enum { FACET_KERNEL_BATCH = 64 };
+struct body;
+struct facet_contact;
 
-/* The sphere is the first of the two, the facet the second; quantities as in contact_law.h. */
+enum {
+    FACET_KERNEL_BATCH = 128,
+    FACET_KERNEL_PAD = 8,  /* runs are multiples of this */
+    FACET_KERNEL_SUMS = 7, /* force on a body (3) [N], torque (3) [N m], work [J] */
+};
+
+/* What a body feels in a step, while it is being summed. */
+struct facet_kernel_load {
+    struct lanes_exact sums[FACET_KERNEL_SUMS];
+    int64_t n_terms;
+    int64_t n_overflow; /* contacts whose force did not fit */
+};
+
+/* Contacts that are known; the sphere is the first of the two, the body the second. */
 struct facet_kernel_batch {
     int n;
-    /* Read. */
-    double normal[3][FACET_KERNEL_BATCH];
-    double velocity[3][FACET_KERNEL_BATCH];    /* [m/s] */
-    double overlap[FACET_KERNEL_BATCH];        /* [m]; 0 for a contact that ends */
-    double inverse_radius[FACET_KERNEL_BATCH]; /* [1/m] */
-    double inverse_mass[FACET_KERNEL_BATCH];   /* [1/kg] */
-    double spin[3][FACET_KERNEL_BATCH];        /* of the body less the sphere's [rad/s] */
+    struct facet_contact *contact[FACET_KERNEL_BATCH];
+    int sphere[FACET_KERNEL_BATCH];
+    struct facet_kernel_load *load[FACET_KERNEL_BATCH];
     const struct material_pair *pair[FACET_KERNEL_BATCH];
-    /* Brought to the present. */
-    double history[CONTACT_LANES][FACET_KERNEL_BATCH];
-    /* Written. */
-    double push[FACET_KERNEL_BATCH];      /* normal force [N] */
-    double grip[3][FACET_KERNEL_BATCH];   /* tangential force on the facet [N] */
-    double torque[3][FACET_KERNEL_BATCH]; /* of a full law, on the facet [N m] */
-    double
-        lost_friction[FACET_KERNEL_BATCH]; /* [J]; this and the next two with the ledger only */
-    double lost_damping[FACET_KERNEL_BATCH]; /* [J] */
-    double lost_law[FACET_KERNEL_BATCH];     /* [J] */
+    double normal[3][FACET_KERNEL_BATCH]; /* from the sphere to the body */
+    double point[3][FACET_KERNEL_BATCH];  /* of the body [m] */
+    double overlap[FACET_KERNEL_BATCH];   /* [m]; 0 for a contact that ends */
+    double wall[3][FACET_KERNEL_BATCH];   /* velocity of the body's surface there [m/s] */
+    double turns[3][FACET_KERNEL_BATCH];  /* its angular velocity [rad/s] */
+    double yield[FACET_KERNEL_BATCH];     /* inverse mass of the body there [1/kg] */
 } __attribute__((aligned(64)));
 
-/* full: with rolling, twisting and static friction. */
-void facet_kernel_apply(struct facet_kernel_batch *batch, double dt, bool full, bool ledger);
+/* Spheres before one face of a body that does not yield and whose surface does not run. */
+struct facet_kernel_run {
+    const struct body *body;
+    int face;
+    int n;                                 /* a multiple of FACET_KERNEL_PAD */
+    struct facet_contact *const *contacts; /* padding is the work's dummy */
+    struct facet_kernel_load *load;
+};
+
+/* What a kernel works on: reads motion, spin and material, adds to the spheres' force rows
+ * (with the ledger on also what friction and damping dissipate, in lanes 3 and 7, and to
+ * dissipated_tangential), to loads; brings history to the present and notes overlaps. */
+struct facet_kernel_work {
+    const struct sphere_row *motion, *spin;
+    struct sphere_row *force;
+    double *dissipated_tangential; /* [J] */
+    const int32_t *material;
+    int n_materials;
+    const struct material_pair *pairs; /* n_materials x n_materials */
+    struct facet_contact *dummy;       /* of the dummy sphere behind the last, no history */
+    double dt;                         /* [s] */
+    double overlap_max;                /* largest overlap / radius: grows [-] */
+};
+
+/* A batch is empty afterwards. */
+struct facet_kernel {
+    void (*batch)(struct facet_kernel_work *work, struct facet_kernel_batch *batch);
+    void (*run)(struct facet_kernel_work *work, const struct facet_kernel_run *run);
+};
+
+/* full: with rolling, twisting and static friction.  The instruction set must run. */
+struct facet_kernel facet_kernel_choose(enum isa isa, bool full, bool ledger);
 
 #endif

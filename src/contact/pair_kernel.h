@@ -56,7 +56,6 @@ struct pair_kernel {
 /* The kernel for spheres all of one material (uniform) or of several; with rolling, twisting
  * and static friction (full) or without; with or without the energy ledger.  The instruction
  * set must run. */
-struct pair_kernel pair_kernel_choose(enum isa isa, bool uniform, bool full,
-                                      bool ledger);
+struct pair_kernel pair_kernel_choose(enum isa isa, bool uniform, bool full, bool ledger);
 
 #endif

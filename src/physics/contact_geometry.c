@@ -7,7 +7,7 @@
  * they belong to, and compared as squares: the common case needs neither root nor division. */
 #include "physics/contact_geometry.h"
 
-static const double SEAM = 1e-7; /* how far regions reach beyond their borders, in radii */
+static const double SEAM = CONTACT_GEOMETRY_SEAM;
 
 /* Does an offset, given as offset times the root of length_squared, go beyond `allowed`? */
 static inline bool goes_beyond(double product, double length_squared, double allowed)
@@ -54,6 +54,7 @@ static inline struct contact_geometry on_face(const struct mesh *mesh, int f,
     };
 }
 
+/* The facet kernel says the same in lanes. */
 static bool face_touches(const struct mesh *mesh, int f, struct vec3 centre, double radius,
                          struct contact_geometry *at)
 {

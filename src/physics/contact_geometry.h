@@ -27,6 +27,9 @@
 #include "base/vec3.h"
 #include "model/mesh.h"
 
+/* How far regions reach beyond their borders, in radii. */
+#define CONTACT_GEOMETRY_SEAM 1e-7
+
 struct contact_geometry {
     struct vec3 point;  /* of the feature, closest to the centre [m] */
     struct vec3 normal; /* unit vector from there to the centre */

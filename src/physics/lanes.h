@@ -1,11 +1,11 @@
 /*
  * Several doubles side by side: what the contact law is written in.
  *
- * The includer says how many with LANES_WIDTH (1, 2, 4 or 8), and the same text then compiles to
- * plain scalar code or to vectors of that width.  Where it says nothing, a file that is compiled
- * for each instruction set (base/isa.h) has as many as that set's vectors hold, any other one.
- * The lanes never mix, and + - * / sqrt are exact to the last bit in each, so every width gives
- * the same bits.
+ * The includer says how many with LANES_WIDTH (1, 2, 4 or 8), and the same text then compiles
+ * to plain scalar code or to vectors of that width.  Where it says nothing, a file that is
+ * compiled for each instruction set (base/isa.h) has as many as that set's vectors hold, any
+ * other one. The lanes never mix, and + - * / sqrt are exact to the last bit in each, so every
+ * width gives the same bits.
  *
  * A comparison gives a mask; where(mask, a, b) *chooses* between two values, and keep(mask, a)
  * chooses between a and +0.0.  Nothing is ever multiplied by a mask: 0 x -a is -0, and 0 x

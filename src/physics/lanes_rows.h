@@ -7,6 +7,7 @@
 
 #include "physics/lanes.h"
 
+#if LANES_WIDTH > 1
 enum { LANES_PARTS = 8 / LANES_WIDTH /* vectors in a row */ };
 
 #define LANES_SHUFFLE(a, b, ...) __builtin_shufflevector(a, b, __VA_ARGS__)
@@ -45,13 +46,15 @@ LANES_INLINE void lanes_transpose_square(lanes *r)
 #endif
 }
 
-/* From LANES_WIDTH rows, part p of row l at r[LANES_WIDTH p + l], to 8 components, component c at r[c]; and
- * back. */
+/* From LANES_WIDTH rows, part p of row l at r[LANES_WIDTH p + l], to 8 components, component
+ * c at r[c]; and back. */
 LANES_INLINE void lanes_transpose(lanes r[8])
 {
 #pragma GCC unroll 4
     for (int part = 0; part < LANES_PARTS; part++)
         lanes_transpose_square(r + LANES_WIDTH * part);
 }
+
+#endif
 
 #endif

@@ -72,7 +72,8 @@ static double choose_half_buffer(const struct simulation *sim)
 }
 
 /* All that does not depend on where the spheres come from. */
-static void begin(struct simulation *sim, const struct comm *comm, const struct job *job)
+static void begin(struct simulation *sim, const struct comm *comm, const struct job *job,
+                  enum isa isa)
 {
     *sim = (struct simulation){.comm = comm, .job = job};
     sim->dt = job->time.step;
@@ -88,7 +89,7 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     local_damping_init(&sim->local_damping, sim);
     spheres_init(&sim->spheres);
     periodic_init(&sim->spheres.periodic, job);
-    facet_contacts_init(&sim->facets, sim->bodies.n);
+    facet_contacts_init(&sim->facets, sim->bodies.n, isa);
     contact_set_init(&sim->contacts, sim->materials.full, job->energy_ledger);
     sim->body_allowance = array_allocate((size_t)sim->bodies.n, sizeof *sim->body_allowance);
     boxes_init(&sim->boxes, comm->n_ranks);
@@ -191,7 +192,7 @@ int simulation_create(struct simulation *sim, const struct comm *comm, const str
         chain_close(&chain);
         return status;
     }
-    begin(sim, comm, job);
+    begin(sim, comm, job, isa);
     if (job->start.given)
         status = chain_begin(&chain, sim);
     if (status != REPORT_FINISHED) {
@@ -260,7 +261,7 @@ static bool fits_job(const struct simulation *sim, const struct checkpoint *chec
 int simulation_restart(struct simulation *sim, const struct comm *comm, const struct job *job,
                        enum isa isa, const char *checkpoint_path)
 {
-    begin(sim, comm, job);
+    begin(sim, comm, job, isa);
     struct checkpoint checkpoint = {.spheres = &sim->spheres,
                                     .full = sim->materials.full,
                                     .ledger = sim->job->energy_ledger};

@@ -13,7 +13,7 @@ words()
     facet_contact) echo facet_contact facet_contacts facet body_load ;;
     body) echo body bodies ;;
     cell_grid) echo cell_grid cell ;;
-    pair_kernel_blocks*) echo pair_kernel ;;
+    *_blocks_v? | *_blocks_generic | *_blocks | *_rows_v? | *_rows_generic | *_rows) echo "${1%_blocks*}" "${1%_rows*}" ;;
     job_*) echo job ;;
     schema_*) echo schema ;;
     *) echo "$1" "${1}s" "${1%s}" ;;
@@ -32,7 +32,7 @@ why=
 for object in "$BUILD"/src/*/*.o; do
     module=$(basename "${object%.o}")
     [ "$module" != main ] || continue
-    [ -e "src/$(basename "$(dirname "$object")")/$module.c" ] || [[ $module == pair_kernel_blocks_* ]] || continue
+    [ -e "src/$(basename "$(dirname "$object")")/$module.c" ] || [[ $module == *_v? || $module == *_generic ]] || continue
     names=$(nm --defined-only --extern-only "$object" | awk '{print $3}' | grep -v '^__' | strangers "$module")
     [ -z "$names" ] || why+=" $module has $(tr '\n' ' ' <<< "$names");"
 done

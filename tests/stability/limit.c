@@ -169,8 +169,8 @@ static bool is_stable(struct rest *rest, double dt)
 {
     struct simulation sim;
     rest->job.time.step = dt;
-    CHECK(simulation_restart(&sim, rest->comm, &rest->job, ISA_AUTO,
-                             rest->checkpoint) == REPORT_FINISHED,
+    CHECK(simulation_restart(&sim, rest->comm, &rest->job, ISA_AUTO, rest->checkpoint) ==
+              REPORT_FINISHED,
           "cannot restart");
     push_spheres(&sim, rest);
     const double start = kinetic_energy(&sim);

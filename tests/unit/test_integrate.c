@@ -84,14 +84,14 @@ static void expect_formula(const struct scene *scene, const struct scene *before
     EXPECT(memcmp(spin, scene->spheres.spin[i].lane, sizeof spin) == 0);
 }
 
-static void step_and_compare(double damping, bool ledger)
+static void step_and_compare(enum isa isa, double damping, bool ledger)
 {
     struct scene scene, before;
     const uint64_t seed = dice.state;
     scene_fill(&before, damping, ledger);
     dice.state = seed;
     scene_fill(&scene, damping, ledger);
-    integrate_spheres(&scene.work);
+    integrate_choose(isa).apply(&scene.work);
     for (int i = 0; i < N; i++) {
         expect_formula(&scene, &before, i);
         const double *f = before.spheres.force[i].lane;
@@ -110,10 +110,9 @@ static void step_and_compare(double damping, bool ledger)
 
 TEST(formula_to_the_last_bit)
 {
-    step_and_compare(0.0, false);
-    step_and_compare(0.0, true);
-    step_and_compare(7.5, false);
-    step_and_compare(7.5, true);
+    for (enum isa isa = ISA_GENERIC; isa < ISA_N; isa++)
+        for (int choice = 0; choice < 4 && isa_runs(isa); choice++)
+            step_and_compare(isa, choice & 1 ? 7.5 : 0.0, choice & 2);
 }
 
 /* One sphere, at rest half a step before the start, without forces. */
@@ -134,7 +133,7 @@ TEST(free_fall)
     struct scene scene;
     scene_single(&scene, 0.0);
     for (int n = 1; n <= 500; n++) {
-        integrate_spheres(&scene.work);
+        integrate_choose(ISA_AUTO).apply(&scene.work);
         const double fallen = 0.5 * 1e-6 * n * (n + 1);
         EXPECT_NEAR(sphere_position(&scene.spheres, 0)[2], -9.81 * fallen, 1e-13);
         EXPECT_NEAR(sphere_position(&scene.spheres, 0)[0], 0.5 * fallen, 1e-13);
@@ -157,7 +156,7 @@ TEST(mass_proportional_damping)
     sphere_angular_velocity(&scene.spheres, 0)[0] = 800.0;
     const double before = scene.spheres.dissipated_damping[0];
     for (int n = 0; n < 500; n++)
-        integrate_spheres(&scene.work);
+        integrate_choose(ISA_AUTO).apply(&scene.work);
     const double *v = sphere_velocity(&scene.spheres, 0),
                  *w = sphere_angular_velocity(&scene.spheres, 0);
     EXPECT_NEAR(v[1] / 3.0, 0.3678794411714423, 1e-6);
@@ -179,7 +178,7 @@ TEST(rotation)
     spin[0] = spin[1] = spin[2] = 0.0;
     for (int n = 0; n < 100; n++) {
         scene.spheres.force[0].lane[5] = 0.02;
-        integrate_spheres(&scene.work);
+        integrate_choose(ISA_AUTO).apply(&scene.work);
     }
     EXPECT_NEAR(spin[1] * 0.4 * mass * radius * radius / (0.02 * 0.1), 1.0, 1e-12);
     EXPECT(spin[0] == 0.0 && spin[2] == 0.0);
@@ -192,7 +191,7 @@ TEST(spent_is_a_bound)
     struct scene scene;
     for (int round = 0; round < 50; round++) {
         scene_fill(&scene, 0.0, false);
-        integrate_spheres(&scene.work);
+        integrate_choose(ISA_AUTO).apply(&scene.work);
         double most[2] = {0.0, 0.0};
         for (int i = 0; i < N; i++) {
             const double *v = sphere_velocity(&scene.spheres, i);
@@ -217,7 +216,7 @@ TEST(runaways_are_noticed)
             struct scene scene;
             scene_fill(&scene, 0.0, true);
             scene.spheres.force[N - 1 - k].lane[lane] = bad[k];
-            integrate_spheres(&scene.work);
+            integrate_choose(ISA_AUTO).apply(&scene.work);
             EXPECT(scene.work.bad);
             spheres_clear(&scene.spheres);
         }
@@ -243,7 +242,7 @@ TEST(periods_do_not_matter)
             }
             scenes[s].work.periodic = s < 2;
             scenes[s].work.snap[0] = scenes[s].work.snap[2] = snap;
-            integrate_spheres(&scenes[s].work);
+            integrate_choose(ISA_AUTO).apply(&scenes[s].work);
         }
         for (int i = 0; i < N; i++) {
             double here[8], there[8], plain[8];
@@ -268,7 +267,7 @@ TEST(periods_do_not_matter)
 TEST(nobody_at_all)
 {
     struct integrate_work work = {.dt = 1e-3};
-    integrate_spheres(&work);
+    integrate_choose(ISA_AUTO).apply(&work);
     EXPECT(work.spent[0] == 0.0 && work.spent[1] == 0.0 && !work.bad);
 }
 

@@ -162,7 +162,7 @@ static void begin(struct run *run)
     spheres_init(&run->spheres);
     halo_init(&run->halo, &run->comm);
     migrate_init(migrate, &run->comm);
-    facet_contacts_init(&run->facets, 1);
+    facet_contacts_init(&run->facets, 1, ISA_AUTO);
     contact_set_init(&run->contacts, true, true);
     place(run, 0);
     for (int id = 0; id < N; id++)

@@ -214,8 +214,7 @@ TEST(apart_nothing_is_written_but_plus_zero)
             for (int lane = 0; lane < CONTACT_LANES; lane++)
                 if (contact_lane_used(lane, true, false))
                     scene.history[lane][k] = lane == CONTACT_RADIUS_LANE ? 1e-4 : -1.0 - k;
-        scene_apply(&scene,
-                    pair_kernel_choose((enum isa)isa, false, true, false).apply);
+        scene_apply(&scene, pair_kernel_choose((enum isa)isa, false, true, false).apply);
         EXPECT(memcmp(scene.force, nothing, sizeof scene.force) == 0);
         for (int lane = 0; lane < CONTACT_LANES; lane++)
             for (int k = 0; k < scene.n_padded; k++)

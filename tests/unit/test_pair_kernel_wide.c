@@ -3,7 +3,7 @@
  * so its blocks and shuffles are tested where there are no vectors of eight.
  */
 #define pair_kernel_blocks_v4 wide_blocks /* beside the library's own */
-#define KERNEL_ISA       4
+#define KERNEL_ISA            4
 /* Everything is inlined; nothing passes such vectors. */
 #pragma GCC diagnostic ignored "-Wpsabi"
 #include "contact/pair_kernel_blocks.c"
@@ -18,8 +18,7 @@ TEST(eight_lanes_give_the_same_bits)
 
     for (int choice = 0; choice < 8; choice++) {
         const bool uniform = choice & 1, full = choice & 2, ledger = choice & 4;
-        const struct pair_kernel kernel =
-            pair_kernel_choose(ISA_AUTO, uniform, full, ledger);
+        const struct pair_kernel kernel = pair_kernel_choose(ISA_AUTO, uniform, full, ledger);
         scene_fill(&expected, 29);
         if (uniform)
             memset(expected.material, 0, sizeof expected.material);

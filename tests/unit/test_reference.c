@@ -80,7 +80,7 @@ static void reference_start(struct reference *r, const struct job *job)
     *r = (struct reference){.job = job};
     materials_build(&r->materials, job);
     bodies_build(&r->bodies, job);
-    facet_contacts_init(&r->facets, r->bodies.n);
+    facet_contacts_init(&r->facets, r->bodies.n, ISA_AUTO);
     spheres_init(&r->spheres);
     periodic_init(&r->spheres.periodic, job);
     spheres_reserve(&r->spheres, job->n_spheres);

@@ -1,0 +1,452 @@
+/*
+ * The facet kernel, in blocks of as many contacts as a vector has lanes.  Compiled once for
+ * each instruction set (base/isa.h).
+ *
+ * As in the pair kernel, rows of spheres and of history are loaded whole and transposed, the
+ * law is taken in vectors, and what comes of it is transposed back and added row by row in the
+ * order of the contacts.  What bodies feel goes to exact sums, whose order does not matter.
+ */
+#include "contact/facet_kernel_blocks.h"
+
+#include "contact/facet_contact.h"
+#include "contact/facet_kernel.h"
+#include "model/body.h"
+#include "physics/contact_geometry.h"
+#include "physics/contact_law.h"
+#include "physics/lanes_rows.h"
+
+enum { WIDTH = LANES_WIDTH, PARTS = LANES_PARTS };
+
+_Static_assert(FACET_KERNEL_BATCH % WIDTH == 0 && FACET_KERNEL_PAD % WIDTH == 0,
+               "batches and runs are whole vectors");
+_Static_assert((int)CONTACT_LANES == (int)CONTACT_LAW_LANES && (int)CONTACT_ROLLING_LANE == 8,
+               "one idea of history; what a full law does not need is one row of it");
+
+struct block {
+    struct facet_contact *contact[WIDTH];
+    int sphere[WIDTH];
+    struct facet_kernel_load *load[WIDTH];
+    const struct material_pair *pair[WIDTH];
+    lanes motion[8], spin[8];                                     /* rows of the spheres */
+    lanes normal[3], point[3], overlap, wall[3], turns[3], yield; /* as in a batch */
+    bool one_load;                                                /* all lanes have the same */
+    bool moves; /* some body of the block does */
+};
+
+LANES_INLINE void load_rows(lanes rows[8], const double *const at[WIDTH])
+{
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++)
+#pragma GCC unroll 4
+        for (int part = 0; part < PARTS; part++)
+            rows[WIDTH * part + l] = lanes_load(at[l] + WIDTH * part);
+    lanes_transpose(rows);
+}
+
+LANES_INLINE void load_spheres(const struct facet_kernel_work *work, struct block *block)
+{
+    const double *motion[WIDTH], *spin[WIDTH];
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++) {
+        motion[l] = work->motion[block->sphere[l]].lane;
+        spin[l] = work->spin[block->sphere[l]].lane;
+    }
+    load_rows(block->motion, motion);
+    load_rows(block->spin, spin);
+}
+
+LANES_INLINE void load_history(const struct block *block, bool full,
+                               lanes history[CONTACT_LANES])
+{
+    const double *rows[WIDTH];
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++)
+        rows[l] = block->contact[l]->history;
+    load_rows(history, rows);
+    if (full)
+        for (int h = CONTACT_ROLLING_LANE; h < CONTACT_LANES; h++) {
+            history[h] = lanes_all(0.0);
+            for (int l = 0; l < WIDTH; l++)
+                history[h][l] = rows[l][h];
+        }
+}
+
+LANES_INLINE void store_history(const struct block *block, bool full,
+                                lanes history[CONTACT_LANES])
+{
+    if (full)
+        for (int h = CONTACT_ROLLING_LANE; h < CONTACT_LANES; h++)
+            for (int l = 0; l < WIDTH; l++)
+                block->contact[l]->history[h] = history[h][l];
+    lanes_transpose(history);
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++) {
+        block->contact[l]->overlap = block->overlap[l];
+#pragma GCC unroll 4
+        for (int part = 0; part < PARTS; part++)
+            lanes_store(block->contact[l]->history + WIDTH * part, history[WIDTH * part + l]);
+    }
+}
+
+LANES_INLINE struct contact_law_constants constants_of(const struct block *block, bool full)
+{
+    bool one = true;
+    for (int l = 1; l < WIDTH; l++)
+        one = one && block->pair[l] == block->pair[0];
+    return one ? contact_law_constants_of_one(block->pair[0])
+               : contact_law_constants_of_each(block->pair, full);
+}
+
+LANES_INLINE void cross(const lanes a[3], const lanes b[3], lanes product[3])
+{
+    product[0] = a[1] * b[2] - a[2] * b[1];
+    product[1] = a[2] * b[0] - a[0] * b[2];
+    product[2] = a[0] * b[1] - a[1] * b[0];
+}
+
+LANES_INLINE void subtract(const lanes a[3], const lanes b[3], lanes difference[3])
+{
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++)
+        difference[x] = a[x] - b[x];
+}
+
+/* |x| + |y| + |z| */
+LANES_INLINE lanes size_of(const lanes a[3])
+{
+    lanes sum = lanes_all(0.0);
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++)
+        sum += (lanes)((lanes_mask)a[x] & INT64_MAX);
+    return sum;
+}
+
+LANES_INLINE struct contact_law_meeting meeting_of(const struct block *block)
+{
+    struct contact_law_meeting meeting = {.overlap = block->overlap,
+                                          .inverse_radius = block->spin[3],
+                                          .inverse_mass = block->spin[7] + block->yield};
+    lanes rolling[3]; /* R w x n [m/s] */
+    cross(block->spin, block->normal, rolling);
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++) {
+        meeting.normal[x] = block->normal[x];
+        meeting.velocity[x] = block->wall[x] - (block->motion[4 + x] + rolling[x]);
+        meeting.spin[x] = block->turns[x] - block->spin[4 + x];
+    }
+    return meeting;
+}
+
+/* Adds a term in limbs to the sum `s` of each lane's load. */
+LANES_INLINE void add_term(const struct block *block, int s, const lanes_mask limbs[3])
+{
+    if (block->one_load) {
+        lanes_exact_add(&block->load[0]->sums[s], limbs);
+        return;
+    }
+    for (int l = 0; l < WIDTH; l++)
+        for (int k = 0; k < 3; k++)
+            block->load[l]->sums[s].limb[k][l] += limbs[k][l];
+}
+
+/* Gives the bodies the force on them, its torque (`twist` besides the force's) and the work of
+ * their motion.  `force` becomes what the exact sums took, so that the spheres' is the opposite
+ * to the last bit. */
+LANES_INLINE void load_bodies(const struct facet_kernel_work *work, const struct block *block,
+                              lanes force[3], const lanes twist[3])
+{
+    const lanes dt = lanes_all(work->dt), none = lanes_all(0.0);
+    const lanes path[3] = {dt * block->wall[0], dt * block->wall[1], dt * block->wall[2]};
+    const lanes turn[3] = {dt * block->turns[0], dt * block->turns[1], dt * block->turns[2]};
+    const lanes reach = 1.0 + size_of(block->point) + size_of(path);
+    const lanes_mask fits = size_of(force) * reach + size_of(twist) * (1.0 + size_of(turn)) <
+                            lanes_all(LANES_EXACT_LIMIT);
+    lanes_mask limbs[3];
+    lanes torque[3];
+
+    if (lanes_any(~fits)) /* something has run away: take note of it */
+        for (int l = 0; l < WIDTH; l++)
+            block->load[l]->n_overflow += fits[l] == 0;
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++) {
+        force[x] = lanes_exact_round(lanes_keep(fits, force[x]), limbs);
+        add_term(block, x, limbs);
+    }
+    cross(block->point, force, torque);
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++) {
+        lanes_exact_round(lanes_keep(fits, torque[x] + twist[x]), limbs);
+        add_term(block, 3 + x, limbs);
+    }
+    if (block->moves) {
+        const lanes done = (none - contact_law_dot(force, path)) - contact_law_dot(twist, turn);
+        lanes_exact_round(lanes_keep(fits, done), limbs);
+        add_term(block, 6, limbs);
+    }
+    for (int l = 0; l < WIDTH; l++)
+        block->load[l]->n_terms++;
+}
+
+/* Adds rows to the spheres' force rows, in order. */
+LANES_INLINE void add_rows(const struct facet_kernel_work *work, const struct block *block,
+                           lanes rows[8])
+{
+    lanes_transpose(rows);
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++) {
+        double *f = work->force[block->sphere[l]].lane;
+#pragma GCC unroll 4
+        for (int part = 0; part < PARTS; part++)
+            lanes_store(f + WIDTH * part,
+                        lanes_load(f + WIDTH * part) + rows[WIDTH * part + l]);
+    }
+}
+
+/* All that follows from where and how spheres touch. */
+LANES_INLINE lanes press(const struct facet_kernel_work *work, const struct block *block,
+                         struct contact_law_choice choice, lanes deepest)
+{
+    const struct contact_law_meeting meeting = meeting_of(block);
+    const struct contact_law_constants constants = constants_of(block, choice.full);
+    const lanes none = lanes_all(0.0), relative = block->overlap * block->spin[3];
+    lanes history[CONTACT_LANES], turn[3], force[3], twist[3], rows[8];
+    struct contact_law_result result;
+
+    load_history(block, choice.full, history);
+    contact_law(&meeting, &constants, lanes_all(work->dt), choice, history, &result);
+    store_history(block, choice.full, history);
+    cross(block->normal, result.tangential, turn);
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++) {
+        force[x] = result.normal * block->normal[x] + result.tangential[x]; /* on the body */
+        twist[x] = choice.full ? result.torque[x] : none;
+        rows[4 + x] = -block->motion[3] * turn[x] - twist[x];
+    }
+    load_bodies(work, block, force, twist);
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++)
+        rows[x] = -force[x];
+    rows[3] = choice.ledger ? result.lost_friction : none;
+    rows[7] = choice.ledger ? result.lost_damping : none;
+    add_rows(work, block, rows);
+    if (choice.ledger)
+        for (int l = 0; l < WIDTH; l++)
+            work->dissipated_tangential[block->sphere[l]] += result.lost_law[l];
+    return lanes_where(relative > deepest, relative, deepest);
+}
+
+static void note_deepest(struct facet_kernel_work *work, lanes deepest)
+{
+    for (int l = 0; l < WIDTH; l++)
+        work->overlap_max = deepest[l] > work->overlap_max ? deepest[l] : work->overlap_max;
+}
+
+/* ---- Batches
+ * ---------------------------------------------------------------------------------- */
+
+/* Lanes beyond the last contact: the dummy, which touches nothing. */
+static void pad(const struct facet_kernel_work *work, struct facet_kernel_batch *batch)
+{
+    for (int k = batch->n; k % WIDTH != 0; k++) {
+        batch->contact[k] = work->dummy;
+        batch->sphere[k] = work->dummy->sphere;
+        batch->load[k] = batch->load[batch->n - 1];
+        batch->pair[k] = batch->pair[batch->n - 1];
+        batch->overlap[k] = batch->yield[k] = 0.0;
+        for (int x = 0; x < 3; x++)
+            batch->normal[x][k] = batch->point[x][k] = batch->wall[x][k] = batch->turns[x][k] =
+                0.0;
+    }
+}
+
+LANES_INLINE void block_of_batch(struct block *block, const struct facet_kernel_batch *batch,
+                                 int k)
+{
+    block->one_load = true;
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++) {
+        block->contact[l] = batch->contact[k + l];
+        block->sphere[l] = batch->sphere[k + l];
+        block->load[l] = batch->load[k + l];
+        block->pair[l] = batch->pair[k + l];
+        block->one_load = block->one_load && block->load[l] == block->load[0];
+    }
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++) {
+        block->normal[x] = lanes_load(&batch->normal[x][k]);
+        block->point[x] = lanes_load(&batch->point[x][k]);
+        block->wall[x] = lanes_load(&batch->wall[x][k]);
+        block->turns[x] = lanes_load(&batch->turns[x][k]);
+    }
+    block->overlap = lanes_load(&batch->overlap[k]);
+    block->yield = lanes_load(&batch->yield[k]);
+    block->moves = true;
+}
+
+LANES_INLINE void apply_batch(struct facet_kernel_work *work, struct facet_kernel_batch *batch,
+                              struct contact_law_choice choice)
+{
+    lanes deepest = lanes_all(0.0);
+
+    pad(work, batch);
+    for (int k = 0; k < batch->n; k += WIDTH) {
+        struct block block;
+        block_of_batch(&block, batch, k);
+        load_spheres(work, &block);
+        deepest = press(work, &block, choice, deepest);
+    }
+    batch->n = 0;
+    note_deepest(work, deepest);
+}
+
+/* ---- Runs
+ * ------------------------------------------------------------------------------------- */
+
+/* A face, the same in all lanes: see face_touches() in physics/contact_geometry.c, which this
+ * is in lanes. */
+struct face {
+    int n;
+    lanes normal[3];
+    lanes from[4][3], inward[4][3], length_squared[4];
+};
+
+static inline struct face face_of(const struct mesh *mesh, int f)
+{
+    struct face face = {.n = mesh->faces[f].n};
+    const struct vec3 *normal = &mesh->face_normal[f];
+    const double *n[3] = {&normal->x, &normal->y, &normal->z};
+    for (int x = 0; x < 3; x++)
+        face.normal[x] = lanes_all(*n[x]);
+    for (int k = 0; k < face.n; k++) {
+        const struct mesh_border *border = &mesh->face_borders[f][k];
+        const double from[3] = {border->from.x, border->from.y, border->from.z};
+        const double inward[3] = {border->inward.x, border->inward.y, border->inward.z};
+        for (int x = 0; x < 3; x++) {
+            face.from[k][x] = lanes_all(from[x]);
+            face.inward[k][x] = lanes_all(inward[x]);
+        }
+        face.length_squared[k] = lanes_all(border->length_squared);
+    }
+    return face;
+}
+
+/* Height over the plane of the centres in the block, and which of them touch. */
+LANES_INLINE lanes_mask find_touching(const struct face *face, const struct block *block,
+                                      lanes *height)
+{
+    const lanes *centre = block->motion, radius = block->motion[3];
+    const lanes hair = CONTACT_GEOMETRY_SEAM * radius;
+    lanes arm[3];
+
+    subtract(centre, face->from[0], arm);
+    *height = contact_law_dot(arm, face->normal);
+    lanes_mask inside = (*height < radius) & (*height > -radius);
+    for (int k = 0; k < face->n; k++) {
+        subtract(centre, face->from[k], arm);
+        const lanes beyond = -contact_law_dot(arm, face->inward[k]);
+        inside &= ~((beyond > lanes_all(0.0)) &
+                    (beyond * beyond > hair * hair * face->length_squared[k]));
+    }
+    return inside;
+}
+
+/* How the body moves, the same in all lanes. */
+struct drift {
+    lanes velocity[3], spin[3], pivot[3];
+};
+
+static inline void spread(struct vec3 a, lanes b[3])
+{
+    b[0] = lanes_all(a.x);
+    b[1] = lanes_all(a.y);
+    b[2] = lanes_all(a.z);
+}
+
+LANES_INLINE void find_wall(const struct drift *drift, struct block *block)
+{
+    lanes arm[3], swing[3];
+    subtract(block->point, drift->pivot, arm);
+    cross(drift->spin, arm, swing);
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++) {
+        block->wall[x] = block->moves ? drift->velocity[x] + swing[x] : lanes_all(0.0);
+        block->turns[x] = block->moves ? drift->spin[x] : lanes_all(0.0);
+    }
+}
+
+/* Finds out which spheres of the block touch the face; false where nothing begins, lasts or
+ * ends. */
+LANES_INLINE bool meet_face(const struct face *face, const struct drift *drift, bool exists,
+                            struct block *block)
+{
+    lanes height, held = lanes_all(0.0);
+    lanes_mask touches = find_touching(face, block, &height);
+    if (!exists)
+        touches = lanes_all(0.0) > lanes_all(0.0);
+    for (int l = 0; l < WIDTH; l++)
+        held[l] = block->contact[l]->history[CONTACT_RADIUS_LANE];
+    if (!lanes_any(touches | (held > lanes_all(0.0))))
+        return false;
+    const lanes_mask behind = height < lanes_all(0.0);
+    block->overlap =
+        lanes_keep(touches, block->motion[3] - lanes_where(behind, -height, height));
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++) {
+        block->normal[x] = lanes_where(behind, face->normal[x], -face->normal[x]);
+        block->point[x] = block->motion[x] + -height * face->normal[x];
+    }
+    find_wall(drift, block);
+    return true;
+}
+
+LANES_INLINE void apply_run(struct facet_kernel_work *work, const struct facet_kernel_run *run,
+                            struct contact_law_choice choice)
+{
+    const struct body *body = run->body;
+    const struct face face = face_of(&body->mesh, run->face);
+    lanes deepest = lanes_all(0.0);
+    struct block block = {.one_load = true, .moves = body->moves, .yield = lanes_all(0.0)};
+    struct drift drift;
+
+    spread(body->velocity_now, drift.velocity);
+    spread(body->spin_now, drift.spin);
+    spread(body->pivot_now, drift.pivot);
+    for (int l = 0; l < WIDTH; l++)
+        block.load[l] = run->load;
+    for (int k = 0; k < run->n; k += WIDTH) {
+#pragma GCC unroll 8
+        for (int l = 0; l < WIDTH; l++) {
+            const int i = run->contacts[k + l]->sphere;
+            block.contact[l] = run->contacts[k + l];
+            block.sphere[l] = i;
+            block.pair[l] =
+                &work->pairs[work->material[i] * work->n_materials + body->material];
+        }
+        load_spheres(work, &block);
+        if (meet_face(&face, &drift, body->exists, &block))
+            deepest = press(work, &block, choice, deepest);
+    }
+    note_deepest(work, deepest);
+}
+
+#define APPLY(name, ...)                                                                       \
+    static void name##_batch(struct facet_kernel_work *work, struct facet_kernel_batch *batch) \
+    {                                                                                          \
+        apply_batch(work, batch, (struct contact_law_choice){__VA_ARGS__});                    \
+    }                                                                                          \
+    static void name##_run(struct facet_kernel_work *work, const struct facet_kernel_run *run) \
+    {                                                                                          \
+        apply_run(work, run, (struct contact_law_choice){__VA_ARGS__});                        \
+    }
+APPLY(apply_plain, .ledger = false)
+APPLY(apply_ledger, .ledger = true)
+APPLY(apply_full, .full = true)
+APPLY(apply_full_ledger, .full = true, .ledger = true)
+
+struct facet_kernel_blocks ISA_OFFER(facet_kernel_blocks)(void)
+{
+    return (struct facet_kernel_blocks){
+        {{{apply_plain_batch, apply_plain_run}, {apply_ledger_batch, apply_ledger_run}},
+         {{apply_full_batch, apply_full_run},
+          {apply_full_ledger_batch, apply_full_ledger_run}}}};
+}
