@@ -8,7 +8,8 @@
  * scalar remainder: lists are padded with dummies.
  *
  * Rows of second members jump about in memory; they are fetched some blocks ahead, which more
- * than doubles the speed once the spheres outgrow the cache.
+ * than doubles the speed once the spheres outgrow the cache.  They are fetched to the second
+ * level of it only: the first can wait for far fewer lines at once, and is filled too soon.
  *
  * Row after row is added in the order of the list, so a sphere's sum does not depend on the
  * number of lanes.  That serializes pairs of one sphere through memory; the law of the next
@@ -23,7 +24,8 @@
 enum {
     WIDTH = LANES_WIDTH,
     PARTS = LANES_PARTS,
-    AHEAD = 32, /* pairs; half as many and twice as many are as good */
+    AHEAD = 96,       /* pairs; two thirds as many are as good */
+    SECOND_LEVEL = 2, /* of the cache, as __builtin_prefetch() counts */
 };
 _Static_assert(AHEAD + WIDTH <= PAIR_KERNEL_AHEAD, "rows are fetched from within the list");
 
@@ -87,9 +89,9 @@ LANES_INLINE void fetch_ahead(const struct pair_kernel_work *work, int k)
 #pragma GCC unroll 8
     for (int l = 0; l < WIDTH; l++) {
         const size_t j = row_at(work->second[k + AHEAD + l]);
-        __builtin_prefetch((const char *)work->motion + j);
-        __builtin_prefetch((const char *)work->spin + j);
-        __builtin_prefetch((const char *)work->force + j, 1);
+        __builtin_prefetch((const char *)work->motion + j, 0, SECOND_LEVEL);
+        __builtin_prefetch((const char *)work->spin + j, 0, SECOND_LEVEL);
+        __builtin_prefetch((const char *)work->force + j, 0, SECOND_LEVEL);
     }
 }
 
