@@ -56,6 +56,7 @@ struct facet_work {
     struct facet_kernel_run *runs;
     struct facet_contact **plain; /* contacts that may only touch one face */
     struct facet_contact **faced; /* those in runs, padded */
+    int *faced_spheres;           /* theirs */
     int n_groups, group_capacity, near_capacity;
     struct group *groups;
     int *near;         /* of all groups, each at its entries' places */
@@ -105,6 +106,7 @@ void facet_contacts_clear(struct facet_contacts *facets)
     free(work->runs);
     free(work->plain);
     free(work->faced);
+    free(work->faced_spheres);
     free(work->groups);
     free(work->near);
     free(work->travelled);
@@ -483,6 +485,21 @@ static int compare_plain(const void *a, const void *b)
     return (*p > *q) - (*p < *q);
 }
 
+/* Padding at most doubles a run. */
+static void reserve_faced(struct facet_work *work)
+{
+    const int needed = 2 * work->n_plain + FACET_KERNEL_AHEAD + FACET_KERNEL_PAD;
+    int capacity = work->faced_capacity;
+    ARRAY_GROW(work->faced_spheres, needed, capacity);
+    ARRAY_GROW(work->faced, needed, work->faced_capacity);
+}
+
+static void add_faced(struct facet_work *work, int *n, struct facet_contact *contact)
+{
+    work->faced[*n] = contact;
+    work->faced_spheres[(*n)++] = contact->sphere;
+}
+
 /* Makes runs of the plain contacts; those of faces with few go one by one. */
 static void list_runs(struct facet_contacts *facets, const struct bodies *bodies)
 {
@@ -490,8 +507,7 @@ static void list_runs(struct facet_contacts *facets, const struct bodies *bodies
     int n = 0;
     if (work->n_plain > 1)
         qsort(work->plain, (size_t)work->n_plain, sizeof *work->plain, compare_plain);
-    /* Padding at most doubles a run. */
-    ARRAY_GROW(work->faced, 2 * work->n_plain + FACET_KERNEL_PAD, work->faced_capacity);
+    reserve_faced(work);
     for (int k = 0, end; k < work->n_plain; k = end) {
         const struct facet_contact *first = work->plain[k];
         for (end = k + 1; end < work->n_plain; end++)
@@ -507,14 +523,17 @@ static void list_runs(struct facet_contacts *facets, const struct bodies *bodies
         struct facet_kernel_run run = {.body = &bodies->list[first->body],
                                        .face = first->feature,
                                        .contacts = work->faced + n,
+                                       .spheres = work->faced_spheres + n,
                                        .load = &work->loads[first->body]};
         for (int m = k; m < end; m++)
-            work->faced[n++] = work->plain[m];
+            add_faced(work, &n, work->plain[m]);
         for (run.n = end - k; run.n % FACET_KERNEL_PAD != 0; run.n++)
-            work->faced[n++] = &work->dummy;
+            add_faced(work, &n, &work->dummy);
         ARRAY_GROW(work->runs, work->n_runs + 1, work->run_capacity);
         work->runs[work->n_runs++] = run;
     }
+    for (int ahead = 0; ahead < FACET_KERNEL_AHEAD + FACET_KERNEL_PAD; ahead++)
+        add_faced(work, &n, &work->dummy);
 }
 
 /* Who is looked at in groups, and who in runs: a sphere's contacts with several bodies follow

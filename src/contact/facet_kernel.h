@@ -25,7 +25,9 @@ struct facet_contact;
 
 enum {
     FACET_KERNEL_BATCH = 128,
-    FACET_KERNEL_PAD = 8,  /* runs are multiples of this */
+    FACET_KERNEL_PAD = 8, /* runs are multiples of this */
+    FACET_KERNEL_AHEAD =
+        32,                /* contacts behind a run's last that must be there, to be fetched */
     FACET_KERNEL_SUMS = 7, /* force on a body (3) [N], torque (3) [N m], work [J] */
 };
 
@@ -57,6 +59,7 @@ struct facet_kernel_run {
     int face;
     int n;                                 /* a multiple of FACET_KERNEL_PAD */
     struct facet_contact *const *contacts; /* padding is the work's dummy */
+    const int *spheres;                    /* theirs */
     struct facet_kernel_load *load;
 };
 

@@ -399,6 +399,20 @@ LANES_INLINE bool meet_face(const struct face *face, const struct drift *drift, 
     return true;
 }
 
+/* Contacts and spheres of a run are far apart in memory. */
+LANES_INLINE void fetch_ahead(const struct facet_kernel_work *work,
+                              const struct facet_kernel_run *run, int k)
+{
+    for (int l = 0; l < WIDTH; l++) {
+        const int ahead = k + FACET_KERNEL_AHEAD + l, i = run->spheres[ahead];
+        __builtin_prefetch(run->contacts[ahead]->history);
+        __builtin_prefetch(&run->contacts[ahead]->sphere);
+        __builtin_prefetch(&work->motion[i]);
+        __builtin_prefetch(&work->spin[i]);
+        __builtin_prefetch(&work->force[i]);
+    }
+}
+
 LANES_INLINE void apply_run(struct facet_kernel_work *work, const struct facet_kernel_run *run,
                             struct contact_law_choice choice)
 {
@@ -414,9 +428,10 @@ LANES_INLINE void apply_run(struct facet_kernel_work *work, const struct facet_k
     for (int l = 0; l < WIDTH; l++)
         block.load[l] = run->load;
     for (int k = 0; k < run->n; k += WIDTH) {
+        fetch_ahead(work, run, k);
 #pragma GCC unroll 8
         for (int l = 0; l < WIDTH; l++) {
-            const int i = run->contacts[k + l]->sphere;
+            const int i = run->spheres[k + l];
             block.contact[l] = run->contacts[k + l];
             block.sphere[l] = i;
             block.pair[l] =
