@@ -77,11 +77,29 @@ static const char *const searches[] = {"auto", "all-pairs", NULL};
 
 static const char *const velocities[] = {"keep", "zero", NULL};
 
+static const struct schema_key start_group_keys[] = {{"name", SCHEMA_NAME, "name of the group",
+                                                      .required = true,
+                                                      AT(struct job_start_group, name)},
+                                                     END};
+
 static const struct schema_key start_keys[] = {
     {"from", SCHEMA_FILE,
-     "folder of another job's run, for its newest checkpoint, or a checkpoint; materials are "
-     "matched by name, ids go on; not needed any more once the run has a checkpoint",
+     "folder of another job's run, for its newest checkpoint, or a checkpoint; materials and "
+     "groups are matched by name, ids go on; not needed any more once the run has a checkpoint",
      .required = true, AT(struct job, start.from)},
+    {"checkpoint", SCHEMA_TEXT,
+     "name of the checkpoint in that folder, like step_000000002000.h5; when left out the newest "
+     "as the run begins, filled in by the program: started again, the run takes the same",
+     GIVEN(struct job, start.checkpoint), AT(struct job, start.checkpoint)},
+    {"sum", SCHEMA_COUNT,
+     "checksum of the checkpoint (CRC-32), filled in by the program: a run does not start from "
+     "another one",
+     .standard = "0", BETWEEN(0.0, 4294967295.0), AT(struct job, start.sum)},
+    {"groups", SCHEMA_LIST,
+     "groups of the other job that this one does not have itself, filled in by the program; "
+     "their numbers follow those of `spheres` and `insert`",
+     UP_TO(100000.0), .inside = start_group_keys, GIVEN(struct job, start.n_groups),
+     LIST_AT(struct job, start.groups, start.n_groups)},
     {"velocities", SCHEMA_CHOICE, "keep velocities and spins, or set them to zero",
      .standard = "keep", .choices = velocities, AT(struct job, start.velocities)},
     END};

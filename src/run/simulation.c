@@ -164,11 +164,6 @@ static void add_groups(struct simulation *sim, const struct packing *before)
     packings_close(&packings);
 }
 
-int simulation_chain_group(const struct job *job)
-{
-    return job->n_spheres + job->n_insertions;
-}
-
 /* Opens the state that the job starts from, if it does from one. */
 static bool open_chain(struct chain *chain, const struct job *job)
 {

@@ -109,9 +109,6 @@ struct runtime_sizes simulation_sizes(const struct simulation *sim);
 /* The rows so far alone.  Collective. */
 int simulation_save_series(struct simulation *sim, const struct run_folder *folder);
 
-/* The group of spheres that another job has left: after those of the job and its insertions. */
-int simulation_chain_group(const struct job *job);
-
 /* Steps in a time, rounded; 1e15 at most.  Local. */
 int64_t simulation_steps(double time, double step);
 
