@@ -743,8 +743,9 @@ static const struct schema_key removal_keys[] = {
     {"name", SCHEMA_NAME, "name of the removal, used once", .required = true,
      AT(struct job_removal, name)},
     {"region", SCHEMA_GROUP,
-     "spheres whose centre is in it are taken out at multiples of 64 steps", .required = true,
-     REGION_AT(struct job_removal, region, region.given)},
+     "spheres whose centre comes into it, were it only to pass through, are taken out at the next "
+     "multiple of 64 steps",
+     .required = true, REGION_AT(struct job_removal, region, region.given)},
     {"start", SCHEMA_NUMBER, "when it begins", .unit = "s", .standard = "0", BETWEEN(0.0, 1e9),
      AT(struct job_removal, start)},
     {"stop", SCHEMA_NUMBER, "when it ends", .unit = "s", .standard = "never", AT_LEAST(0.0),

@@ -626,6 +626,33 @@ static void warn_of_ends(const struct job *job, const struct bodies *bodies, dou
     }
 }
 
+/* The inside of a body catches who is in it at a step; other regions also who passes through in
+ * one. */
+static void warn_of_thin_removals(const struct job *job, const struct bodies *bodies,
+                                  double radius)
+{
+    const double way = job->watch.motion * radius;
+    for (int k = 0; k < job->n_removals; k++) {
+        struct region region;
+        char *why = NULL;
+        if (job->removals[k].region.kind != JOB_REGION_INSIDE ||
+            !region_build(&region, &job->removals[k].region, bodies, &why)) {
+            free(why);
+            continue;
+        }
+        const struct vec3 size = vec3_sub(region.high, region.low);
+        const double aside = size.x < size.y ? size.x : size.y;
+        const double least = size.z < aside ? size.z : aside;
+        if (least < way)
+            report_warn(
+                "the region of removal '%s' is %.3g m thin and spheres may go %.3g m in "
+                "a step (watch.motion), so some could pass through the inside of a body "
+                "unseen; a box, cylinder or sphere misses none",
+                job->removals[k].name, least, way);
+        region_clear(&region);
+    }
+}
+
 /* The forces of the start, as the run would find them.  Collective. */
 static void print_start(const struct job *job, const struct comm *comm)
 {
@@ -671,6 +698,7 @@ void check_print(const struct job *job, const struct comm *comm)
     const int64_t n = print_groups(job, &bodies, &scene, &radius_most);
     survey_print(job, &bodies);
     warn_of_ends(job, &bodies, radius_most);
+    warn_of_thin_removals(job, &bodies, radius_most);
     add_bodies(&bodies, &scene);
     bodies_clear(&bodies);
     print_extent("scene    ", &scene);

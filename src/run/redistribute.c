@@ -160,6 +160,7 @@ static void search(struct simulation *sim, const int *moved, bool some_left_run)
     restore_arrivals(sim, some_left_run);
     facet_contacts_search(&sim->facets, spheres, &sim->bodies, sim->body_allowance, all_pairs);
     sections_search(&sim->sections, spheres);
+    removals_search(&sim->removals, spheres);
     for (int i = 0; i < spheres->n_owned; i++) {
         for (int k = 0; k < 3; k++)
             spheres->searched_at[i][k] = sphere_position(spheres, i)[k];

@@ -48,6 +48,28 @@ status=0
 [ "$status" = 2 ] || why+=" the status is $status, not 2;"
 result "tremie-contents of nothing"
 
+# ------------------------------------------------------------------ gates thinner than a step
+
+run 1 gates gates
+"$bin/tremie-contents" gates > said 2>&1
+says "taken out by sheet: 6 spheres"
+says "taken out by disc: 10 spheres"
+says "taken out by ball: 10 spheres"
+says "taken out by edge: 10 spheres"
+run 3 other gates --set testing.search_every=7 --set testing.repartition_every=30
+same_run gates other
+result "no gate is passed unseen"
+
+# At step 150 spheres are noted that leave at 192.
+for file in other/checkpoints/step_*.h5; do
+    [[ $file < other/checkpoints/step_000000000151.h5 ]] || rm "$file"
+done
+run 2 other gates
+says "resumes at step 150 "
+same_run gates other
+rm -rf gates other
+result "what is noted between is kept"
+
 # ------------------------------------------------------------------ nothing, something, nothing
 cat > brief.yaml << 'END'
 time: {end: 0.2, step: 1.0e-4}
