@@ -697,8 +697,10 @@ static const struct schema_key until_keys[] = {
     {"mass", SCHEMA_NUMBER, "the next sphere would bring more mass than this in all",
      .unit = "kg", .standard = "never", ABOVE(0.0), .word = "never", .word_value = INFINITY,
      AT(struct job_insertion, until_mass)},
-    {"time", SCHEMA_NUMBER, "this instant", .unit = "s", .standard = "never", ABOVE(0.0),
-     .word = "never", .word_value = INFINITY, AT(struct job_insertion, until_time)},
+    {"time", SCHEMA_NUMBER,
+     "this instant: all that is due by then comes in by the step before it", .unit = "s",
+     .standard = "never", ABOVE(0.0), .word = "never", .word_value = INFINITY,
+     AT(struct job_insertion, until_time)},
     END};
 
 static const struct schema_key insertion_keys[] = {
@@ -730,7 +732,8 @@ static const struct schema_key insertion_keys[] = {
     {"until", SCHEMA_GROUP, "when it ends: with the first of these, or with the run",
      .inside = until_keys},
     {"every", SCHEMA_COUNT,
-     "steps between occasions: what is due comes in at their multiples, and searches follow",
+     "steps between occasions: what is due comes in at their multiples, and searches follow; the "
+     "end of the run is none, as it can be put off: `until` its time, all comes in",
      .standard = "64", BETWEEN(1.0, 1e9), AT(struct job_insertion, every)},
     {"when_full", SCHEMA_CHOICE,
      "what happens when a sphere finds no room in 100 attempts: it waits for the next "
