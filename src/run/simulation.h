@@ -69,6 +69,7 @@ struct simulation {
     struct migrate migrate;
     struct balance balance;
     double half_buffer; /* least allowance of a search [m] */
+    double asked_most;  /* largest that speeds may ask for at the next one, in radii */
     struct simulation_spent spent;
 
     struct vec3 gravity;        /* at this step [m/s2] */
