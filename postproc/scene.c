@@ -200,9 +200,5 @@ void scene_clear(struct scene *scene)
 
 const char *scene_group(const struct scene *scene, int group)
 {
-    const int insertion = group - scene->job.n_spheres;
-    if (!scene->has_job || group < 0 || insertion >= scene->job.n_insertions)
-        return NULL;
-    return insertion < 0 ? scene->job.spheres[group].name
-                         : scene->job.insertions[insertion].name;
+    return scene->has_job ? job_group_name(&scene->job, group) : NULL;
 }

@@ -80,16 +80,34 @@ static void print_census(const struct census *census)
         printf("  mass              %.6g kg\n", census->mass);
 }
 
-/* What a group is made of, as far as the job says. */
-static const char *material_of_group(const struct job *job, int group)
+/* What a group is made of that came from another job: this one does not say. */
+static const char *material_found(const struct scene *scene, int group)
 {
+    int found = -1;
+    for (int i = 0; i < scene->spheres.n_owned; i++) {
+        const int material = scene->spheres.material[i];
+        if (scene->spheres.group[i] != group)
+            continue;
+        if (found >= 0 && material != found)
+            return "a mix";
+        found = material;
+    }
+    return found >= 0 && found < scene->job.n_materials ? scene->job.materials[found].name
+                                                        : "no material";
+}
+
+static const char *material_of_group(const struct scene *scene, int group)
+{
+    const struct job *job = &scene->job;
     if (group < job->n_spheres)
         return job->materials[job->spheres[group].material].name;
+    if (group >= job->n_spheres + job->n_insertions)
+        return material_found(scene, group);
     const struct job_insertion *insertion = &job->insertions[group - job->n_spheres];
     return insertion->n_mix > 0 ? "a mix" : job->materials[insertion->material].name;
 }
 
-/* Groups of spheres as the job names them, and insertions. */
+/* Groups of spheres as the job names them, insertions, and what another job has left. */
 static void print_groups(const struct scene *scene)
 {
     for (int g = 0; scene_group(scene, g) != NULL; g++) {
@@ -98,7 +116,7 @@ static void print_groups(const struct scene *scene)
             if (scene->spheres.group[i] == g)
                 count_sphere(&census, scene, i);
         printf("  group %-11s %" PRId64 " of %s, %.6g kg\n", scene_group(scene, g), census.n,
-               material_of_group(&scene->job, g), census.mass);
+               material_of_group(scene, g), census.mass);
     }
 }
 

@@ -41,21 +41,42 @@ void contact_set_clear(struct contact_set *contacts)
     *contacts = (struct contact_set){0};
 }
 
-/* Room for n entries, the padding and what kernels look ahead; contents are lost. */
-static void list_reserve(const struct contact_set *contacts, struct contact_list *list, int n)
+/* Capacity for n entries, the padding and what kernels look ahead; 0: there is room. */
+static size_t capacity_for(int n, int capacity)
 {
     const int needed = n + CONTACT_PAD + CONTACT_AHEAD;
-    if (needed <= list->capacity)
+    return needed <= capacity
+               ? 0
+               : array_capacity((size_t)capacity, (size_t)needed + (size_t)needed / 8);
+}
+
+/* Room for the pairs of n entries; contents are lost. */
+static void list_reserve_pairs(struct contact_list *list, int n)
+{
+    const size_t capacity = capacity_for(n, list->capacity);
+    if (capacity == 0)
         return;
-    const size_t capacity =
-        array_capacity((size_t)list->capacity, (size_t)needed + (size_t)needed / 8);
-    list_clear(list);
+    free(list->first);
+    free(list->second);
     list->capacity = (int)capacity;
     list->first = array_allocate_rows(capacity, sizeof(int));
     list->second = array_allocate_rows(capacity, sizeof(int));
-    for (int l = 0; l < CONTACT_LANES; l++)
-        if (has_lane(contacts, l))
-            list->history[l] = array_allocate_rows(capacity, sizeof(double));
+}
+
+/* Room for the history of n entries; contents are lost. */
+static void list_reserve_history(const struct contact_set *contacts, struct contact_list *list,
+                                 int n)
+{
+    const size_t capacity = capacity_for(n, list->history_capacity);
+    if (capacity == 0)
+        return;
+    list->history_capacity = (int)capacity;
+    for (int l = 0; l < CONTACT_LANES; l++) {
+        if (!has_lane(contacts, l))
+            continue;
+        free(list->history[l]);
+        list->history[l] = array_allocate_rows(capacity, sizeof(double));
+    }
 }
 
 static void list_pad(struct contact_set *contacts, int dummy)
@@ -109,6 +130,7 @@ static void select_pairs(struct contact_set *contacts, const struct candidates *
         begin = candidates->row_end[place];
     }
     list->n = n;
+    list_reserve_history(contacts, list, n);
     for (int l = 0; l < CONTACT_LANES; l++) {
         for (int k = 0; has_lane(contacts, l) && k < n; k++)
             list->history[l][k] = 0.0;
@@ -246,7 +268,7 @@ void contact_set_prune(struct contact_set *contacts, const struct candidates *ca
     const struct contact_list swap = contacts->before;
     contacts->before = contacts->now;
     contacts->now = swap;
-    list_reserve(contacts, &contacts->now, candidates->n);
+    list_reserve_pairs(&contacts->now, candidates->n);
     if (spheres->n_all > contacts->row_capacity) {
         const size_t capacity =
             array_capacity((size_t)contacts->row_capacity, (size_t)spheres->n_all);

@@ -42,7 +42,8 @@ struct spheres;
 struct contact_list {
     int n;        /* entries */
     int n_padded; /* a multiple of CONTACT_PAD; the padding pairs the two dummies */
-    int capacity;
+    int capacity; /* of first and second: any candidate may be listed */
+    int history_capacity;
     int *first, *second; /* storage indices, CONTACT_AHEAD more of them than n_padded */
     double *history[CONTACT_LANES]; /* NULL where the job needs no such lane */
 };

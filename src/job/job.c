@@ -443,6 +443,25 @@ void job_clear(struct job *job)
     *job = (struct job){0};
 }
 
+int job_n_groups(const struct job *job)
+{
+    /* Jobs as used of before there were names of groups have no checksum either. */
+    const bool unnamed = job->start.given && job->start.sum == 0 && job->start.n_groups == 0;
+    return job->n_spheres + job->n_insertions + (unnamed ? 1 : job->start.n_groups);
+}
+
+const char *job_group_name(const struct job *job, int group)
+{
+    const int insertion = group - job->n_spheres, before = insertion - job->n_insertions;
+    if (group < 0 || group >= job_n_groups(job))
+        return NULL;
+    if (insertion < 0)
+        return job->spheres[group].name;
+    if (before < 0)
+        return job->insertions[insertion].name;
+    return job->start.n_groups > 0 ? job->start.groups[before].name : "start";
+}
+
 char *job_write(const struct job *job)
 {
     const char **names = array_allocate((size_t)job->n_materials, sizeof *names);
@@ -523,13 +542,16 @@ static char *difference_report(const char *path, const struct yaml_tree_node *wa
     return text;
 }
 
-/* Files are the same when their names are: a folder may have been moved. */
+bool job_same_file(const char *a, const char *b)
+{
+    const char *p = strrchr(a, '/'), *q = strrchr(b, '/');
+    return strcmp(p != NULL ? p + 1 : a, q != NULL ? q + 1 : b) == 0;
+}
+
 static bool scalars_equal(const char *key, const char *was, const char *now)
 {
-    if (key != NULL && (strcmp(key, "file") == 0 || strcmp(key, "from") == 0)) {
-        const char *p = strrchr(was, '/'), *q = strrchr(now, '/');
-        return strcmp(p != NULL ? p + 1 : was, q != NULL ? q + 1 : now) == 0;
-    }
+    if (key != NULL && (strcmp(key, "file") == 0 || strcmp(key, "from") == 0))
+        return job_same_file(was, now);
     return strcmp(was, now) == 0;
 }
 

@@ -122,6 +122,11 @@ struct job_spheres {
 
 enum job_velocities { JOB_VELOCITIES_KEEP, JOB_VELOCITIES_ZERO };
 
+/* A group of the job that another one starts from, which it has not itself. */
+struct job_start_group {
+    char *name;
+};
+
 enum job_geometry {
     JOB_GEOMETRY_PLANE,
     JOB_GEOMETRY_BOX,
@@ -356,9 +361,13 @@ struct job {
     } time;
     struct {
         bool given;
-        char *from; /* folder of a run, or a checkpoint */
+        char *from;       /* folder of a run, or a checkpoint */
+        char *checkpoint; /* name of the file in that folder; NULL: the newest */
+        int64_t sum;      /* checksum of the checkpoint; 0: whatever it has */
         enum job_velocities velocities;
-        bool recalled; /* not a key: the run that is resumed has it already */
+        int n_groups;
+        struct job_start_group *groups; /* that come with its spheres */
+        bool recalled;                  /* not a key: the run that is resumed has it already */
     } start;
     int64_t seed;        /* of all random numbers */
     struct vec3 gravity; /* [m/s2]; at the start where it turns, none where there is a table */
@@ -445,6 +454,15 @@ bool job_read(struct job *job, const char *path, int n_overrides,
 bool job_read_text(struct job *job, const char *path, const char *text,
                    struct mistakes *mistakes);
 void job_clear(struct job *job);
+
+/* Groups of spheres: those of `spheres`, of `insert`, and of the job that this one starts from,
+ * counted on in this order. */
+int job_n_groups(const struct job *job);
+/* NULL where there is no group of this number. */
+const char *job_group_name(const struct job *job, int group);
+
+/* Have two paths the same last part?  A folder may have been moved since it was named. */
+bool job_same_file(const char *a, const char *b);
 
 /* The job as used, every default written out, as YAML that job_read accepts and that gives
  * an equal job.  The caller frees it. */

@@ -77,11 +77,29 @@ static const char *const searches[] = {"auto", "all-pairs", NULL};
 
 static const char *const velocities[] = {"keep", "zero", NULL};
 
+static const struct schema_key start_group_keys[] = {{"name", SCHEMA_NAME, "name of the group",
+                                                      .required = true,
+                                                      AT(struct job_start_group, name)},
+                                                     END};
+
 static const struct schema_key start_keys[] = {
     {"from", SCHEMA_FILE,
-     "folder of another job's run, for its newest checkpoint, or a checkpoint; materials are "
-     "matched by name, ids go on; not needed any more once the run has a checkpoint",
+     "folder of another job's run, for its newest checkpoint, or a checkpoint; materials and "
+     "groups are matched by name, ids go on; not needed any more once the run has a checkpoint",
      .required = true, AT(struct job, start.from)},
+    {"checkpoint", SCHEMA_TEXT,
+     "name of the checkpoint in that folder, like step_000000002000.h5; when left out the newest "
+     "as the run begins, filled in by the program: started again, the run takes the same",
+     GIVEN(struct job, start.checkpoint), AT(struct job, start.checkpoint)},
+    {"sum", SCHEMA_COUNT,
+     "checksum of the checkpoint (CRC-32), filled in by the program: a run does not start from "
+     "another one",
+     .standard = "0", BETWEEN(0.0, 4294967295.0), AT(struct job, start.sum)},
+    {"groups", SCHEMA_LIST,
+     "groups of the other job that this one does not have itself, filled in by the program; "
+     "their numbers follow those of `spheres` and `insert`",
+     UP_TO(100000.0), .inside = start_group_keys, GIVEN(struct job, start.n_groups),
+     LIST_AT(struct job, start.groups, start.n_groups)},
     {"velocities", SCHEMA_CHOICE, "keep velocities and spins, or set them to zero",
      .standard = "keep", .choices = velocities, AT(struct job, start.velocities)},
     END};
@@ -679,8 +697,10 @@ static const struct schema_key until_keys[] = {
     {"mass", SCHEMA_NUMBER, "the next sphere would bring more mass than this in all",
      .unit = "kg", .standard = "never", ABOVE(0.0), .word = "never", .word_value = INFINITY,
      AT(struct job_insertion, until_mass)},
-    {"time", SCHEMA_NUMBER, "this instant", .unit = "s", .standard = "never", ABOVE(0.0),
-     .word = "never", .word_value = INFINITY, AT(struct job_insertion, until_time)},
+    {"time", SCHEMA_NUMBER,
+     "this instant: all that is due by then comes in by the step before it", .unit = "s",
+     .standard = "never", ABOVE(0.0), .word = "never", .word_value = INFINITY,
+     AT(struct job_insertion, until_time)},
     END};
 
 static const struct schema_key insertion_keys[] = {
@@ -712,7 +732,8 @@ static const struct schema_key insertion_keys[] = {
     {"until", SCHEMA_GROUP, "when it ends: with the first of these, or with the run",
      .inside = until_keys},
     {"every", SCHEMA_COUNT,
-     "steps between occasions: what is due comes in at their multiples, and searches follow",
+     "steps between occasions: what is due comes in at their multiples, and searches follow; the "
+     "end of the run is none, as it can be put off: `until` its time, all comes in",
      .standard = "64", BETWEEN(1.0, 1e9), AT(struct job_insertion, every)},
     {"when_full", SCHEMA_CHOICE,
      "what happens when a sphere finds no room in 100 attempts: it waits for the next "
@@ -725,8 +746,9 @@ static const struct schema_key removal_keys[] = {
     {"name", SCHEMA_NAME, "name of the removal, used once", .required = true,
      AT(struct job_removal, name)},
     {"region", SCHEMA_GROUP,
-     "spheres whose centre is in it are taken out at multiples of 64 steps", .required = true,
-     REGION_AT(struct job_removal, region, region.given)},
+     "spheres whose centre comes into it, were it only to pass through, are taken out at the next "
+     "multiple of 64 steps",
+     .required = true, REGION_AT(struct job_removal, region, region.given)},
     {"start", SCHEMA_NUMBER, "when it begins", .unit = "s", .standard = "0", BETWEEN(0.0, 1e9),
      AT(struct job_removal, start)},
     {"stop", SCHEMA_NUMBER, "when it ends", .unit = "s", .standard = "never", AT_LEAST(0.0),

@@ -541,6 +541,64 @@ bool region_contains(const struct region *region, struct vec3 x, double margin)
     return false;
 }
 
+/* The part of a way, from share first to share last of it, that is left of it. */
+struct stretch {
+    double first, last;
+};
+
+/* Cuts off where low <= from + share * along <= high does not hold. */
+static void cut(struct stretch *stretch, double from, double along, double low, double high)
+{
+    const double a = (low - from) / along, b = (high - from) / along;
+    if (along == 0.0 && !(from >= low && from <= high))
+        stretch->last = -1.0;
+    if (along == 0.0)
+        return;
+    stretch->first = greater(stretch->first, lesser(a, b));
+    stretch->last = lesser(stretch->last, greater(a, b));
+}
+
+static bool meets_box(const struct region *region, struct vec3 from, struct vec3 way)
+{
+    const struct vec3 low = region->low, high = region->high;
+    struct stretch stretch = {0.0, 1.0};
+    cut(&stretch, from.x, way.x, low.x, high.x);
+    cut(&stretch, from.y, way.y, low.y, high.y);
+    cut(&stretch, from.z, way.z, low.z, high.z);
+    return stretch.first <= stretch.last;
+}
+
+static bool meets_cylinder(const struct region *region, struct vec3 from, struct vec3 way)
+{
+    const struct vec3 r = vec3_sub(from, region->centre), axis = region->axis;
+    const double at = vec3_dot(r, axis), along = vec3_dot(way, axis);
+    const struct vec3 aside = vec3_axpy(r, -at, axis), across = vec3_axpy(way, -along, axis);
+    struct stretch stretch = {0.0, 1.0};
+    cut(&stretch, at, along, 0.0, region->length);
+    return stretch.first <= stretch.last &&
+           segment_distance(
+               (struct vec3){0.0, 0.0, 0.0}, vec3_axpy(aside, stretch.first, across),
+               vec3_axpy(aside, stretch.last, across)) <= region->radius * region->radius;
+}
+
+bool region_is_met(const struct region *region, struct vec3 x, struct vec3 way)
+{
+    const struct vec3 from = vec3_sub(x, way);
+    if (region_contains(region, x, 0.0))
+        return true;
+    switch (region->kind) {
+    case JOB_REGION_BOX:
+        return meets_box(region, from, way);
+    case JOB_REGION_CYLINDER:
+        return meets_cylinder(region, from, way);
+    case JOB_REGION_SPHERE:
+        return segment_distance(region->centre, from, x) <= region->radius * region->radius;
+    case JOB_REGION_INSIDE:
+        return false;
+    }
+    return false;
+}
+
 static double between(double low, double high, double margin, double share)
 {
     const double room = (high - low) - 2.0 * margin;

@@ -37,6 +37,10 @@ void region_clear(struct region *region);
 /* Is x inside, at least `margin` (>= 0) from the region's surface? */
 bool region_contains(const struct region *region, struct vec3 x, double margin);
 
+/* Does the straight way to x, along and as long as `way`, meet the region?  Of the inside of a
+ * body: is x in it? */
+bool region_is_met(const struct region *region, struct vec3 x, struct vec3 way);
+
 /* A random point, even in the box that holds all places with this margin: try region_contains
  * next.  Attempts from 0; each takes the counters 3 attempt .. 3 attempt + 2 of the stream. */
 struct vec3 region_point(const struct region *region, double margin, uint64_t seed,

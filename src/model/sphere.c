@@ -45,6 +45,11 @@ const struct field sphere_fields[SPHERE_N_FIELDS] = {
     [SPHERE_DISSIPATED_TANGENTIAL] = {"dissipated_tangential", "J",
                                       "lost by the tangential law on unloading since birth",
                                       FIELD_DOUBLE, 1, FIELD_SAVED},
+    [SPHERE_CAUGHT] =
+        {"caught", "1",
+         "1 + the removal, counted from 0 in the order of the job, that is to take "
+         "it out; 0: none",
+         FIELD_INT32, 1, FIELD_SAVED},
 };
 
 void spheres_init(struct spheres *spheres)
@@ -67,6 +72,7 @@ void spheres_clear(struct spheres *spheres)
     free(spheres->dissipated_friction);
     free(spheres->dissipated_damping);
     free(spheres->dissipated_tangential);
+    free(spheres->caught);
     free(spheres->allowance);
     free(spheres->inverse_allowance);
     free(spheres->searched_at);
@@ -95,6 +101,7 @@ void spheres_reserve(struct spheres *spheres, int n)
     RESIZE(dissipated_friction);
     RESIZE(dissipated_damping);
     RESIZE(dissipated_tangential);
+    RESIZE(caught);
     RESIZE(allowance);
     RESIZE(inverse_allowance);
     RESIZE(searched_at);
@@ -132,8 +139,10 @@ struct field_view sphere_view(const struct spheres *spheres, int field)
     case SPHERE_DISSIPATED_DAMPING:
         return VIEW(spheres->dissipated_damping);
     case SPHERE_DISSIPATED_TANGENTIAL:
-    default:
         return VIEW(spheres->dissipated_tangential);
+    case SPHERE_CAUGHT:
+    default:
+        return VIEW(spheres->caught);
     }
 #undef VIEW
 }
@@ -168,6 +177,7 @@ void spheres_pad(struct spheres *spheres)
         spheres->dissipated_friction[i] = 0.0;
         spheres->dissipated_damping[i] = 0.0;
         spheres->dissipated_tangential[i] = 0.0;
+        spheres->caught[i] = 0;
         spheres->allowance[i] = 0.0;
         spheres->inverse_allowance[i][0] = spheres->inverse_allowance[i][1] = 0.0;
     }

@@ -27,7 +27,7 @@ struct sphere_row {
     double lane[8];
 } __attribute__((aligned(64)));
 
-enum { SPHERE_N_FIELDS = 12, SPHERE_DUMMIES = 2 };
+enum { SPHERE_N_FIELDS = 13, SPHERE_DUMMIES = 2 };
 
 /* State, in the order of sphere_fields[]. */
 enum sphere_field {
@@ -43,6 +43,7 @@ enum sphere_field {
     SPHERE_DISSIPATED_FRICTION,
     SPHERE_DISSIPATED_DAMPING,
     SPHERE_DISSIPATED_TANGENTIAL,
+    SPHERE_CAUGHT,
 };
 
 struct spheres {
@@ -58,6 +59,7 @@ struct spheres {
     double *dissipated_friction;   /* [J] since birth */
     double *dissipated_damping;    /* [J] */
     double *dissipated_tangential; /* [J] lost by the tangential law on unloading */
+    int32_t *caught; /* 1 + the removal that is to take it out; 0: none (run/removal) */
     /* Not state: bookkeeping of searches. */
     double *allowance;              /* how far this sphere may go before a search is due [m] */
     double (*inverse_allowance)[2]; /* of candidates and of the inner list [1/m] */

@@ -210,10 +210,8 @@ void capture_take(struct simulation *sim)
     snapshot->groups = array_string("");
     for (int m = 0; m < job->n_materials; m++)
         snapshot->materials = add_line(snapshot->materials, job->materials[m].name);
-    for (int g = 0; g < job->n_spheres; g++)
-        snapshot->groups = add_line(snapshot->groups, job->spheres[g].name);
-    for (int i = 0; i < job->n_insertions; i++)
-        snapshot->groups = add_line(snapshot->groups, job->insertions[i].name);
+    for (int g = 0; g < job_n_groups(job); g++)
+        snapshot->groups = add_line(snapshot->groups, job_group_name(job, g));
     add_spheres(sim, &snapshot->spheres);
     table_arrange(&snapshot->spheres, sim->comm, sim->next_id);
     if (snapshot->has_contacts) {

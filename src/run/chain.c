@@ -19,22 +19,25 @@
 #include "store/run_folder.h"
 #include "store/sphere_file.h"
 
-/* The file itself, or the newest checkpoint of a run's folder; NULL where there is none. */
-static char *checkpoint_of(const char *from)
+char *chain_checkpoint(const struct job *job)
 {
     struct stat status;
-    struct run_folder folder = {.lock = -1};
+    struct run_folder folder = {.path = job->start.from, .lock = -1};
     int64_t *steps = NULL;
     char *path = NULL;
-    if (stat(from, &status) != 0)
+    if (stat(folder.path, &status) != 0)
         return NULL;
     if (!S_ISDIR(status.st_mode))
-        return array_string(from);
-    folder.path = array_string(from);
-    if (run_folder_checkpoints(&folder, &steps) > 0)
+        return array_string(folder.path);
+    if (job->start.checkpoint != NULL)
+        path = array_format("%s/checkpoints/%s", folder.path, job->start.checkpoint);
+    else if (run_folder_checkpoints(&folder, &steps) > 0)
         path = run_folder_checkpoint_path(&folder, steps[0]);
     free(steps);
-    free(folder.path);
+    if (path != NULL && stat(path, &status) != 0) {
+        free(path);
+        path = NULL;
+    }
     return path;
 }
 
@@ -96,6 +99,30 @@ static int *match_bodies(const struct job *from, const struct job *to, const int
     return match;
 }
 
+/* The job's number of the group of this name: one of its own, or one that comes with the
+ * spheres, which is added to the names where it is new. */
+static int find_group(struct chain *chain, const struct job *to, const char *name)
+{
+    const int n_own = to->n_spheres + to->n_insertions;
+    for (int g = 0; g < n_own; g++)
+        if (strcmp(job_group_name(to, g), name) == 0)
+            return g;
+    for (int k = 0; k < chain->n_names; k++)
+        if (strcmp(chain->names[k], name) == 0)
+            return n_own + k;
+    chain->names[chain->n_names++] = name;
+    return n_own + chain->n_names - 1;
+}
+
+static void match_groups(struct chain *chain, const struct job *to)
+{
+    chain->n_groups = job_n_groups(&chain->job);
+    chain->group = array_allocate((size_t)chain->n_groups, sizeof *chain->group);
+    chain->names = array_allocate((size_t)chain->n_groups, sizeof *chain->names);
+    for (int g = 0; g < chain->n_groups; g++)
+        chain->group[g] = find_group(chain, to, job_group_name(&chain->job, g));
+}
+
 static bool same_corner(struct vec3 a, struct vec3 b)
 {
     return a.x == b.x && a.y == b.y && a.z == b.z;
@@ -142,6 +169,22 @@ static void check_pairs(const struct job *job, const bool *coming, struct mistak
     free(there);
 }
 
+/* Reads which group each sphere is in. */
+static void read_groups(struct chain *chain, struct h5 *h5)
+{
+    const int64_t n = chain->packing.n;
+    chain->group_of = array_allocate((size_t)n, sizeof *chain->group_of);
+    int32_t *group = array_allocate((size_t)n, sizeof *group);
+    h5_read_rows(h5, "/spheres/group", &sphere_fields[SPHERE_GROUP], 0, n, group);
+    for (int64_t i = 0; h5->why == NULL && i < n; i++) {
+        if (group[i] >= 0 && group[i] < chain->n_groups)
+            chain->group_of[i] = chain->group[group[i]];
+        else
+            h5_fail(h5, "/spheres/group names one that its job does not have");
+    }
+    free(group);
+}
+
 /* Reads which material each sphere has and gives it the job's. */
 static char *read_materials(struct chain *chain, const struct job *job,
                             struct mistakes *mistakes)
@@ -166,6 +209,7 @@ static char *read_materials(struct chain *chain, const struct job *job,
         if (own >= 0)
             coming[own] = true;
     }
+    read_groups(chain, &h5);
     h5_close(&h5);
     for (int m = 0; m < n_materials; m++)
         if (missing[m])
@@ -185,7 +229,7 @@ static char *read_state(struct chain *chain, const struct job *job, struct mista
     struct checkpoint header;
     struct mistakes theirs;
     char *why = NULL;
-    chain->path = checkpoint_of(job->start.from);
+    chain->path = chain_checkpoint(job);
     if (chain->path == NULL)
         return array_string("there is no such file, or no checkpoint in that folder");
     if (!checkpoint_read_header(chain->path, &header, &why))
@@ -202,6 +246,7 @@ static char *read_state(struct chain *chain, const struct job *job, struct mista
         return why;
     chain->material = match_materials(&chain->job, job);
     chain->body = match_bodies(&chain->job, job, chain->material);
+    match_groups(chain, job);
     chain->same_space = is_same_space(&chain->job, job);
     const struct packing_sphere standard = {.radius = 0.0};
     why = sphere_file_read(chain->path, &standard, &chain->packing.n, &chain->packing.rows);
@@ -236,6 +281,9 @@ void chain_close(struct chain *chain)
     free(chain->path);
     free(chain->material);
     free(chain->body);
+    free(chain->group);
+    free(chain->group_of);
+    free(chain->names);
     *chain = (struct chain){.path = NULL};
 }
 
@@ -254,7 +302,7 @@ static void renew_sphere(const struct chain *chain, struct simulation *sim, int 
         .angular_velocity = moves ? (struct vec3){w[0], w[1], w[2]} : none,
         .radius = sphere_radius(&sim->spheres, i),
         .material = chain->material[sim->spheres.material[i]]};
-    simulation_set_sphere(sim, i, sim->spheres.id[i], simulation_chain_group(sim->job),
+    simulation_set_sphere(sim, i, sim->spheres.id[i], chain->group[sim->spheres.group[i]],
                           &sphere);
 }
 
@@ -294,14 +342,15 @@ static void give_contacts(const struct chain *chain, struct simulation *sim,
     checkpoint->facet_contacts = NULL;
 }
 
-/* Are materials and bodies of this rank's rows among those of the file's own job? */
+/* Are materials, groups and bodies of this rank's rows among those of the file's own job? */
 static bool is_sound(const struct chain *chain, const struct simulation *sim,
                      const struct checkpoint *checkpoint)
 {
     bool sound = true;
     for (int i = 0; i < sim->spheres.n_owned; i++)
         sound = sound && sim->spheres.material[i] < chain->job.n_materials &&
-                chain->material[sim->spheres.material[i]] >= 0;
+                chain->material[sim->spheres.material[i]] >= 0 &&
+                sim->spheres.group[i] < chain->n_groups;
     for (int r = 0; r < checkpoint->n_facet_contacts; r++)
         sound = sound && checkpoint->facet_contacts[r].body < chain->job.n_bodies;
     return sound;

@@ -2,10 +2,13 @@
  * A job that starts from another one's state (`start: {from: ...}`): its spheres with their
  * places, velocities and ids, and what their contacts remember.
  *
- * Materials are matched by name; one that spheres have and the job lacks is a mistake.
+ * Materials are matched by name; one that spheres have and the job lacks is a mistake.  So are
+ * groups; those that the job lacks are counted on from its own, under the names that they had.
  * Contacts between spheres stay.  Contacts with a body stay where the job has that body as it
  * was: same name, material and surface, at rest in both; others begin anew.  Time, sums and
- * counts begin at 0.  Once the run has a checkpoint the other one is not needed any more.
+ * counts begin at 0.  Once the run has a checkpoint the other one is not needed any more; until
+ * then the job as used names the file and its checksum, so that a run that was killed before
+ * starts from the same again whatever the other run has done since.
  */
 #ifndef TREMIE_RUN_CHAIN_H
 #define TREMIE_RUN_CHAIN_H
@@ -27,8 +30,16 @@ struct chain {
     struct job job;         /* the other job */
     struct packing packing; /* its spheres, as rows with the job's materials */
     int *material, *body;   /* the job's, for each of the other one; -1: none */
+    int n_groups, *group;   /* the job's, for each group of the other one */
+    int *group_of;          /* the job's, for each row */
+    int n_names;            /* of groups that come with the spheres, in the order of numbers */
+    const char **names;     /* they belong to the other job */
     bool same_space;        /* the same directions repeat */
 };
+
+/* The checkpoint that `job` starts from: the file itself, the one that it names in a run's
+ * folder, or the newest there; NULL where there is none.  The caller frees it.  Local. */
+char *chain_checkpoint(const struct job *job);
 
 /* Finds and reads the state that `job` starts from.  Returns false with the mistakes listed;
  * then there is nothing to close.  Local. */

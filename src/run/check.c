@@ -240,11 +240,48 @@ static void add_period_mistakes(struct mistakes *mistakes, const struct job *job
                          sizes[k], "xyz"[k], DIAMETERS, DIAMETERS * 2.0 * radius);
 }
 
-void check_recall(struct job *job, const struct job *used)
+/* Replaces the groups that come with the spheres of the start. */
+static void name_groups(struct job *job, int n, const char *const *names)
+{
+    struct job_start_group *groups = array_allocate((size_t)n, sizeof *groups);
+    for (int k = 0; k < n; k++)
+        groups[k].name = array_string(names[k]);
+    for (int k = 0; k < job->start.n_groups; k++)
+        free(job->start.groups[k].name);
+    free(job->start.groups);
+    job->start.groups = groups;
+    job->start.n_groups = n;
+}
+
+/* Takes over which checkpoint the run started from, as far as the job does not say. */
+static void recall_start(struct job *job, const struct job *used)
+{
+    if (job->start.checkpoint == NULL && used->start.checkpoint != NULL)
+        job->start.checkpoint = array_string(used->start.checkpoint);
+    if (job->start.sum == 0)
+        job->start.sum = used->start.sum;
+}
+
+static void recall_groups(struct job *job, const struct job *used)
+{
+    const int n = used->start.n_groups;
+    const char **names = array_allocate((size_t)n, sizeof *names);
+    for (int k = 0; k < n; k++)
+        names[k] = used->start.groups[k].name;
+    name_groups(job, n, names);
+    free(names);
+}
+
+void check_recall(struct job *job, const struct job *used, bool has_state)
 {
     if (!job->start.given || !used->start.given)
         return;
+    if (has_state || job_same_file(job->start.from, used->start.from))
+        recall_start(job, used);
+    if (!has_state)
+        return;
     job->start.recalled = true;
+    recall_groups(job, used);
     if (!job->domain.given) {
         job->domain.given = true;
         job->domain.min = used->domain.min;
@@ -256,11 +293,42 @@ void check_recall(struct job *job, const struct job *used)
     }
 }
 
-/* Opens what the job starts from, unless that was done when the run began. */
-static void open_start(const struct job *job, struct chain *before, struct mistakes *mistakes)
+/* Is the checkpoint that the job names by its checksum there as it was?  Lists what is not. */
+static bool is_start_there(const struct job *job, struct mistakes *mistakes)
 {
-    if (job->start.given && !job->start.recalled)
-        chain_open(before, job, mistakes);
+    char *path = chain_checkpoint(job);
+    const bool there = path != NULL, same = there && checksum(path) == job->start.sum;
+    const char *name = job->start.checkpoint != NULL ? job->start.checkpoint : "it";
+    if (!same)
+        mistakes_add(mistakes, job->path, 0, 0,
+                     "start.from: %s: %s %s since the run, which has no checkpoint of its "
+                     "own yet, began; the same file as then is expected, or --fresh, which "
+                     "begins from what is there now",
+                     job->start.from, name, there ? "has changed" : "has gone");
+    free(path);
+    return same;
+}
+
+/* Notes which checkpoint it was: started again before it has one of its own, the run begins
+ * from the same.  (A file named by `from` needs no name in a folder.) */
+static void pin_start(struct job *job, const struct chain *before)
+{
+    if (job->start.checkpoint == NULL && strcmp(before->path, job->start.from) != 0)
+        job->start.checkpoint = array_string(strrchr(before->path, '/') + 1);
+    if (job->start.sum == 0)
+        job->start.sum = checksum(before->path);
+    name_groups(job, before->n_names, before->names);
+}
+
+/* Opens what the job starts from, unless the run that is resumed needs it no more. */
+static void open_start(struct job *job, struct chain *before, struct mistakes *mistakes)
+{
+    if (!job->start.given || job->start.recalled)
+        return;
+    if (job->start.sum != 0 && !is_start_there(job, mistakes))
+        return;
+    if (chain_open(before, job, mistakes))
+        pin_start(job, before);
 }
 
 bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
@@ -434,6 +502,32 @@ static void print_insertion(const struct job *job, int k, const struct materials
                     job->watch.motion);
 }
 
+/* The spheres that another job has left, group by group. */
+static void print_chain(const struct job *job, const struct chain *chain,
+                        const struct materials *materials, double speed)
+{
+    const int n_groups = job_n_groups(job);
+    int64_t *counts = array_allocate((size_t)n_groups, sizeof *counts);
+    struct packing group = {.rows =
+                                array_allocate((size_t)chain->packing.n, sizeof *group.rows)};
+    report_say("start     %s, step %lld (%.6g s)", chain->path, (long long)chain->step,
+               chain->time);
+    for (int64_t k = 0; k < chain->packing.n; k++)
+        counts[chain->group_of[k]]++;
+    for (int g = 0; g < n_groups; g++) {
+        if (counts[g] == 0)
+            continue;
+        group.n = 0;
+        for (int64_t k = 0; k < chain->packing.n; k++)
+            if (chain->group_of[k] == g)
+                group.rows[group.n++] = chain->packing.rows[k];
+        const struct group_summary summary = summarise(job, &group);
+        print_group(job, job_group_name(job, g), &group, &summary, materials, speed);
+    }
+    free(group.rows);
+    free(counts);
+}
+
 static int64_t print_groups(const struct job *job, const struct bodies *bodies,
                             struct extent *scene, double *radius_most)
 {
@@ -445,7 +539,8 @@ static int64_t print_groups(const struct job *job, const struct bodies *bodies,
     double speed = 0.0;
     int64_t n = 0;
     mistakes_init(&mistakes);
-    open_start(job, &before, &mistakes);
+    CHECK(!job->start.given || chain_open(&before, job, &mistakes),
+          "the start was there and has gone: %s", mistakes.list[0].text);
     CHECK(packings_open(&packings, job, bodies, &before.packing, sphere_file_read, &mistakes),
           "a packing was there and has gone: %s", mistakes.list[0].text);
     mistakes_clear(&mistakes);
@@ -472,7 +567,7 @@ static int64_t print_groups(const struct job *job, const struct bodies *bodies,
     materials_build(&materials, job);
     speed = foresee_speed(job, bodies, speed);
     if (already.n > 0)
-        print_group(job, "start", &before.packing, &already, &materials, speed);
+        print_chain(job, &before, &materials, speed);
     for (int g = 0; g < job->n_spheres; g++)
         print_group(job, job->spheres[g].name, &packings.groups[g], &groups[g], &materials,
                     speed);
@@ -531,6 +626,33 @@ static void warn_of_ends(const struct job *job, const struct bodies *bodies, dou
     }
 }
 
+/* The inside of a body catches who is in it at a step; other regions also who passes through in
+ * one. */
+static void warn_of_thin_removals(const struct job *job, const struct bodies *bodies,
+                                  double radius)
+{
+    const double way = job->watch.motion * radius;
+    for (int k = 0; k < job->n_removals; k++) {
+        struct region region;
+        char *why = NULL;
+        if (job->removals[k].region.kind != JOB_REGION_INSIDE ||
+            !region_build(&region, &job->removals[k].region, bodies, &why)) {
+            free(why);
+            continue;
+        }
+        const struct vec3 size = vec3_sub(region.high, region.low);
+        const double aside = size.x < size.y ? size.x : size.y;
+        const double least = size.z < aside ? size.z : aside;
+        if (least < way)
+            report_warn(
+                "the region of removal '%s' is %.3g m thin and spheres may go %.3g m in "
+                "a step (watch.motion), so some could pass through the inside of a body "
+                "unseen; a box, cylinder or sphere misses none",
+                job->removals[k].name, least, way);
+        region_clear(&region);
+    }
+}
+
 /* The forces of the start, as the run would find them.  Collective. */
 static void print_start(const struct job *job, const struct comm *comm)
 {
@@ -576,6 +698,7 @@ void check_print(const struct job *job, const struct comm *comm)
     const int64_t n = print_groups(job, &bodies, &scene, &radius_most);
     survey_print(job, &bodies);
     warn_of_ends(job, &bodies, radius_most);
+    warn_of_thin_removals(job, &bodies, radius_most);
     add_bodies(&bodies, &scene);
     bodies_clear(&bodies);
     print_extent("scene    ", &scene);

@@ -15,9 +15,10 @@ struct mistakes;
  * only the scene shows.  Local, on the rank that read the job. */
 bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes);
 
-/* Fills in the same from the job as used, of the run that is to be resumed: what that started
- * from (`start`) may be gone.  Call check_complete next.  Local. */
-void check_recall(struct job *job, const struct job *used);
+/* Fills in the same from the job as used, of the run that is to go on: once it has a state of
+ * its own what it started from (`start`) may be gone; before, it starts from the same
+ * checkpoint.  Call check_complete next.  Local. */
+void check_recall(struct job *job, const struct job *used, bool has_state);
 
 /* `tremie check`: prints the scene, critical steps, cost estimate and warnings, after a look at
  * the contacts of the start.  Speaks on one rank.  Collective. */

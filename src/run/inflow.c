@@ -13,6 +13,7 @@
 #include "model/sizes.h"
 #include "run/insertion.h"
 #include "run/limits.h"
+#include "run/simulation.h"
 
 /* ------------------------------------------------------------------------------- regions */
 
@@ -135,8 +136,11 @@ struct inflow inflow_of(const struct job *job, int number)
         .radius_most = sizes.max,
         .speed = vec3_norm(most),
     };
-    const double due = insertion_due(insertion, job->time.end);
-    inflow.n = insertion->by_mass ? due / inflow.mean_mass : due;
+    const int64_t n_steps =
+        job->time.step > 0.0 ? simulation_steps(job->time.end, job->time.step) : 0;
+    const double due = n_steps > 0 ? insertion_due_since(insertion, n_steps, job->time.step)
+                                   : insertion_due(insertion, job->time.end);
+    inflow.n = insertion->by_mass ? due / inflow.mean_mass : floor(due);
     if (insertion->until_count > 0 && inflow.n > (double)insertion->until_count)
         inflow.n = (double)insertion->until_count;
     if (inflow.n * inflow.mean_mass > insertion->until_mass)

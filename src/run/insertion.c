@@ -119,6 +119,26 @@ double insertion_due(const struct job_insertion *asked, double time)
     return asked->until_count > 0 && due > most ? most : due;
 }
 
+/* Is it that time, but for rounding? */
+static bool has_come(double time, double now)
+{
+    return now * (1.0 + HAIR) >= time;
+}
+
+/* Is until.time later than this step, but not than the next? */
+static bool is_last(const struct job_insertion *asked, int64_t step, double dt)
+{
+    return !has_come(asked->until_time, (double)step * dt) &&
+           has_come(asked->until_time, (double)(step + 1) * dt);
+}
+
+double insertion_due_since(const struct job_insertion *asked, int64_t step, double dt)
+{
+    const bool over = has_come(asked->until_time, (double)(step + 1) * dt);
+    return insertion_due(asked,
+                         over ? asked->until_time : (double)(step - step % asked->every) * dt);
+}
+
 /* Is the next sphere due, which would bring this mass? */
 static bool next_is_due(const struct insertion *insertion, double mass, double due)
 {
@@ -147,15 +167,20 @@ static bool draw_next(const struct simulation *sim, struct insertion *insertion,
     return true;
 }
 
-/* Is this step an occasion at which something is due? */
+/* Finds whether this step is an occasion at which something is due. */
 static bool has_occasion(const struct simulation *sim, struct insertion *insertion)
 {
     const double time = (double)sim->step * sim->dt;
     const struct job_insertion *asked = insertion->asked;
-    if (sim->step % asked->every != 0 || time < asked->start || time > asked->until_time)
+    const bool regular =
+        sim->step % asked->every == 0 && time >= asked->start && time <= asked->until_time;
+    insertion->occasion = false;
+    if (!regular && !is_last(asked, sim->step, sim->dt))
         return false;
-    (void)draw_next(sim, insertion, insertion_due(asked, time));
-    return insertion->n_waiting > 0;
+    insertion->due = insertion_due_since(asked, sim->step, sim->dt);
+    (void)draw_next(sim, insertion, insertion->due);
+    insertion->occasion = insertion->n_waiting > 0;
+    return insertion->occasion;
 }
 
 /* --------------------------------------------------------------------------------------
@@ -171,9 +196,8 @@ static bool is_near(const struct region *region, struct vec3 x, double radius)
 
 /* Adds the sphere, and its images over periodic boundaries, where they may be in the way.  New
  * spheres lie wholly within the domain and cannot meet each other's images. */
-static void add_to_crowd(struct insertions *all, const bool *occasion,
-                         const struct spheres *spheres, int i, int n_shifts,
-                         double shifts[PERIODIC_IMAGES][3])
+static void add_to_crowd(struct insertions *all, const struct spheres *spheres, int i,
+                         int n_shifts, double shifts[PERIODIC_IMAGES][3])
 {
     const struct vec3 place = sphere_place(spheres, i);
     const double radius = sphere_radius(spheres, i);
@@ -182,15 +206,14 @@ static void add_to_crowd(struct insertions *all, const bool *occasion,
         const struct vec3 x = vec3_add(place, shift);
         bool near = false;
         for (int k = 0; k < all->n && !near; k++)
-            near = occasion[k] && is_near(&all->list[k].region, x, radius);
+            near = all->list[k].occasion && is_near(&all->list[k].region, x, radius);
         if (near)
             crowd_add(&all->crowd, x, radius);
     }
 }
 
 /* The owned spheres that could be in the way of the insertions that have an occasion. */
-static void fill_crowd(struct simulation *sim, const bool *occasion,
-                       const unsigned char *removed)
+static void fill_crowd(struct simulation *sim, const unsigned char *removed)
 {
     struct insertions *all = &sim->insertions;
     const struct spheres *spheres = &sim->spheres;
@@ -204,12 +227,12 @@ static void fill_crowd(struct simulation *sim, const bool *occasion,
     double greatest = all->radius_max;
     for (int k = 0; k < all->n; k++) {
         const double most = all->list[k].sizes.max;
-        greatest = occasion[k] && most > greatest ? most : greatest;
+        greatest = all->list[k].occasion && most > greatest ? most : greatest;
     }
     crowd_init(&all->crowd, greatest);
     for (int i = 0; i < spheres->n_owned; i++) {
         if (removed == NULL || !removed[i])
-            add_to_crowd(all, occasion, spheres, i, n_shifts, shifts);
+            add_to_crowd(all, spheres, i, n_shifts, shifts);
     }
     comm_max(sim->comm, &all->radius_max, 1);
 }
@@ -327,9 +350,10 @@ static double mass_waiting(const struct simulation *sim, const struct insertion 
 }
 
 /* Says that an insertion lacks room, and again whenever twice as much is lacking; or fails. */
-static void report_full(struct simulation *sim, struct insertion *insertion, double due)
+static void report_full(struct simulation *sim, struct insertion *insertion)
 {
     const struct job_insertion *asked = insertion->asked;
+    const double due = insertion->due;
     char text[160];
     if (asked->by_mass)
         snprintf(text, sizeof text, "insertion '%.40s': asked %.6g kg so far, inserted %.6g kg",
@@ -354,42 +378,34 @@ static void report_full(struct simulation *sim, struct insertion *insertion, dou
 
 static void insert(struct simulation *sim, struct insertion *insertion)
 {
-    const double due = insertion_due(insertion->asked, (double)sim->step * sim->dt);
     struct round round;
     for (int w = 0; w < insertion->n_waiting; w++)
         insertion->waiting[w].n_tried = 0;
     do {
-        while (draw_next(sim, insertion, due))
+        while (draw_next(sim, insertion, insertion->due))
             continue;
         propose(sim, insertion, &round);
         accept(sim, insertion, &round);
     } while (round.n > 0);
     if (insertion->n_waiting > 0)
-        report_full(sim, insertion, due);
+        report_full(sim, insertion);
 }
 
 int insertions_try(struct simulation *sim, const unsigned char *removed)
 {
     struct insertions *all = &sim->insertions;
-    bool *occasion, any = false;
+    bool any = false;
     all->n_new = 0;
-    if (all->n == 0)
-        return 0;
-    occasion = array_allocate((size_t)all->n, sizeof *occasion);
-    for (int k = 0; k < all->n; k++) {
-        occasion[k] = has_occasion(sim, &all->list[k]);
-        any = any || occasion[k];
-    }
-    if (any) {
-        facet_contacts_refit(&sim->facets, &sim->bodies);
-        fill_crowd(sim, occasion, removed);
-    }
     for (int k = 0; k < all->n; k++)
-        if (occasion[k])
+        any = has_occasion(sim, &all->list[k]) || any;
+    if (!any)
+        return 0;
+    facet_contacts_refit(&sim->facets, &sim->bodies);
+    fill_crowd(sim, removed);
+    for (int k = 0; k < all->n; k++)
+        if (all->list[k].occasion)
             insert(sim, &all->list[k]);
-    if (any)
-        crowd_clear(&all->crowd);
-    free(occasion);
+    crowd_clear(&all->crowd);
     return all->n_new;
 }
 

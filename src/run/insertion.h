@@ -2,7 +2,10 @@
  * Insertion: spheres that come in while the run goes on.
  *
  * At its occasions, steps that are multiples of `every`, an insertion brings in what is due:
- * its rate times the time since its start, less what it has brought.  The k-th sphere of an
+ * its rate times the time since its start, less what it has brought.  The last step before
+ * until.time is an occasion too, for all that is due by until.time: none is lost, and a run
+ * that ends there has it in its last checkpoint.  (The end of a run is none: a run that is made
+ * longer later does what it would have done.)  The k-th sphere of an
  * insertion has its radius, material and velocity from k alone, so what finds no room waits
  * with its size and the sizes keep their distribution however full the region is.  Places are
  * drawn by the number of the attempt.  Every rank draws the same, tests against the spheres
@@ -39,7 +42,9 @@ struct insertion_waiting {
 
 struct insertion {
     const struct job_insertion *asked;
-    int number; /* in the job */
+    bool occasion; /* at this step, and something is due */
+    double due;    /* then: by number or mass as the rate is */
+    int number;    /* in the job */
     struct region region;
     struct sizes sizes;
     /* State, the same on all ranks. */
@@ -81,6 +86,8 @@ void insertions_place(struct simulation *sim);
 
 /* What is due by `time`, by number or mass as the rate is. */
 double insertion_due(const struct job_insertion *asked, double time);
+/* What was due at the last occasion up to this step. */
+double insertion_due_since(const struct job_insertion *asked, int64_t step, double dt);
 /* Radius, material and velocity of the k-th sphere of the insertion of this number; its place
  * is not set. */
 struct packing_sphere insertion_sphere(const struct job_insertion *asked, int number,

@@ -21,6 +21,7 @@
 #include "run/control.h"
 #include "run/drive.h"
 #include "run/options.h"
+#include "store/checkpoint.h"
 #include "store/file.h"
 #include "store/run_folder.h"
 #include "store/surface_file.h"
@@ -43,32 +44,50 @@ static const char USAGE[] =
     "checkpoint;\n"
     "other: a bug in tremie\n";
 
-/* A run that resumes knows what it started from (run/check, check_recall). */
-static void recall(struct job *job, const struct options *options)
+/* The job as used of the run that is to go on: its text in the folder, or in the checkpoint
+ * that is asked for; *has_state tells whether there is any to go on from.  NULL: none. */
+static char *text_as_used(const struct job *job, const struct options *options, bool *has_state)
 {
     struct run_folder folder = {.lock = -1};
+    struct checkpoint header;
+    int64_t *steps = NULL;
+    char *text = NULL, *why = NULL;
+    *has_state = options->restart != NULL;
+    if (options->restart != NULL) {
+        if (checkpoint_read_header(options->restart, &header, &why)) {
+            text = array_string(header.job_text);
+            checkpoint_clear(&header);
+        }
+    } else if (!options->fresh) {
+        folder.path = options->out != NULL ? array_string(options->out)
+                                           : array_format("runs/%s", job->name);
+        char *path = array_format("%s/job.yaml", folder.path);
+        *has_state = run_folder_checkpoints(&folder, &steps) > 0;
+        why = file_read(path, INT_MAX, &text);
+        free(path);
+    }
+    free(why); /* what cannot be read is met again, and said then */
+    free(steps);
+    free(folder.path);
+    return text;
+}
+
+/* A run that goes on knows what it started from (run/check, check_recall). */
+static void recall(struct job *job, const struct options *options)
+{
     struct mistakes mistakes;
     struct job used;
-    char *text = NULL;
-    if (!job->start.given || options->command != OPTIONS_RUN || options->fresh)
+    bool has_state;
+    if (!job->start.given || options->command != OPTIONS_RUN)
         return;
-    folder.path =
-        options->out != NULL ? array_string(options->out) : array_format("runs/%s", job->name);
-    char *path = array_format("%s/job.yaml", folder.path);
-    int64_t *steps = NULL;
-    const bool resumes = run_folder_checkpoints(&folder, &steps) > 0;
-    char *why = resumes ? file_read(path, INT_MAX, &text) : NULL;
+    char *text = text_as_used(job, options, &has_state);
     mistakes_init(&mistakes);
-    if (text != NULL && job_read_text(&used, path, text, &mistakes)) {
-        check_recall(job, &used);
+    if (text != NULL && job_read_text(&used, options->job, text, &mistakes)) {
+        check_recall(job, &used, has_state);
         job_clear(&used);
     }
     mistakes_clear(&mistakes);
-    free(why);
     free(text);
-    free(steps);
-    free(path);
-    free(folder.path);
 }
 
 /* Reads the job on rank 0; everybody gets its complete text.  Returns a REPORT_ status.

@@ -1,6 +1,7 @@
 /*
  * See redistribute.h.  Allowances: a sphere may go s = max(half buffer, 1.3 |v| K dt) before a
- * search is due, at most a few radii; the inner list has its own, much smaller ones.  The sum
+ * search is due, at most a few radii, fewer where so many are fast and near each other that
+ * lists get long; the inner list has its own, much smaller ones.  The sum
  * over steps of the largest |v|/s dt bounds what has been used; when it exceeds 1 the exact
  * largest |x - x_search|/s decides.
  */
@@ -21,6 +22,10 @@ static const double SEARCH_STEPS = 60.0, INNER_STEPS = 20.0;
 static const double SPEED_MARGIN = 1.3;
 /* Largest allowance and least inner allowance, in radii. */
 static const double ALLOWANCE_MOST = 6.0, INNER_LEAST = 0.0015;
+/* Candidates a sphere beyond which speeds give shorter allowances, for rarer searches do not
+ * pay any more; how much shorter from search to search, and longer again; and the least that
+ * speeds may ask for, in radii, which is where a run begins. */
+static const double CANDIDATES_MOST = 12.0, SHORTER = 0.8, LONGER = 1.25, ASKED_LEAST = 1.0;
 /* Largest allowance in shortest periods: images one period away are then all that is needed. */
 static const double PERIOD_SHARE = 0.125;
 /* Below this exact share a search can wait. */
@@ -53,7 +58,9 @@ static void choose_allowances(struct simulation *sim, int begin, int end)
     for (int i = begin; i < end; i++) {
         const double *v = sphere_velocity(spheres, i);
         const double most = ALLOWANCE_MOST * sphere_radius(spheres, i);
-        const double reach = horizon * sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        const double asked = horizon * sqrt(v[0] * v[0] + v[1] * v[1] + v[2] * v[2]);
+        const double bearable = sim->asked_most * sphere_radius(spheres, i);
+        const double reach = asked < bearable ? asked : bearable;
         double allowance = reach > sim->half_buffer ? reach : sim->half_buffer;
         allowance = allowance < most ? allowance : most;
         allowance = allowance < far ? allowance : far;
@@ -147,6 +154,19 @@ static void restore_facets(struct simulation *sim)
     free(spheres);
 }
 
+/* Adapts how much speeds may ask for at the next search to how long lists are at this one; the
+ * same on all ranks, as a ghost's allowance is its owner's.  Collective. */
+static void adapt_allowances(struct simulation *sim)
+{
+    int64_t n = sim->candidates.n;
+    comm_sum_int(sim->comm, &n, 1);
+    const bool many = (double)n > CANDIDATES_MOST * (double)sim->n_spheres;
+    const double most = sim->asked_most * (many ? SHORTER : LONGER);
+    sim->asked_most = most < ASKED_LEAST      ? ASKED_LEAST
+                      : most > ALLOWANCE_MOST ? ALLOWANCE_MOST
+                                              : most;
+}
+
 /* Global search with the present owners and ghosts; moved as for contact_set_prune(). */
 static void search(struct simulation *sim, const int *moved, bool some_left_run)
 {
@@ -156,10 +176,13 @@ static void search(struct simulation *sim, const int *moved, bool some_left_run)
         choose_body_allowances(sim);
     spheres_pad(spheres);
     candidates_search(&sim->candidates, spheres, all_pairs);
+    if (!all_pairs)
+        adapt_allowances(sim);
     prune(sim, moved);
     restore_arrivals(sim, some_left_run);
     facet_contacts_search(&sim->facets, spheres, &sim->bodies, sim->body_allowance, all_pairs);
     sections_search(&sim->sections, spheres);
+    removals_search(&sim->removals, spheres);
     for (int i = 0; i < spheres->n_owned; i++) {
         for (int k = 0; k < 3; k++)
             spheres->searched_at[i][k] = sphere_position(spheres, i)[k];
@@ -227,6 +250,7 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
 
 void redistribute_first(struct simulation *sim)
 {
+    sim->asked_most = ASKED_LEAST;
     choose_body_allowances(sim);
     if (has_fixed_grid(sim))
         boxes_set_grid(&sim->boxes, sim->job->decomposition.fixed, sim->job->domain.min,

@@ -139,6 +139,7 @@ void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
     spheres->dissipated_friction[i] = 0.0;
     spheres->dissipated_damping[i] = 0.0;
     spheres->dissipated_tangential[i] = 0.0;
+    spheres->caught[i] = 0;
     sections_begin(&sim->sections, spheres, i);
 }
 
@@ -164,11 +165,6 @@ static void add_groups(struct simulation *sim, const struct packing *before)
         sim->next_id += n;
     }
     packings_close(&packings);
-}
-
-int simulation_chain_group(const struct job *job)
-{
-    return job->n_spheres + job->n_insertions;
 }
 
 /* Opens the state that the job starts from, if it does from one. */
@@ -245,8 +241,10 @@ static bool fits_job(const struct simulation *sim, const struct checkpoint *chec
     bool fits = true;
     for (int i = 0; i < sim->spheres.n_owned; i++) {
         const int material = sim->spheres.material[i];
+        const int caught = sim->spheres.caught[i];
         fits = fits && material >= 0 && material < sim->materials.n &&
-               sphere_radius(&sim->spheres, i) > 0.0;
+               sphere_radius(&sim->spheres, i) > 0.0 && caught >= 0 &&
+               caught <= sim->removals.n;
     }
     for (int r = 0; r < checkpoint->n_facet_contacts; r++) {
         const struct facet_contact_record *record = &checkpoint->facet_contacts[r];
@@ -264,7 +262,8 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
     begin(sim, comm, job, isa);
     struct checkpoint checkpoint = {.spheres = &sim->spheres,
                                     .full = sim->materials.full,
-                                    .ledger = sim->job->energy_ledger};
+                                    .ledger = sim->job->energy_ledger,
+                                    .removals = job->n_removals > 0};
     int status = checkpoint_read(comm, checkpoint_path, &checkpoint);
     const bool fits = status == REPORT_FINISHED && fits_job(sim, &checkpoint) &&
                       restore_monitors(sim, &checkpoint) == REPORT_FINISHED &&
@@ -386,7 +385,8 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
                                     .next_id = sim->next_id,
                                     .spheres = &sim->spheres,
                                     .full = sim->materials.full,
-                                    .ledger = sim->job->energy_ledger};
+                                    .ledger = sim->job->energy_ledger,
+                                    .removals = sim->removals.n > 0};
     checkpoint.title = array_string(sim->job->title);
     checkpoint.job_text = array_string(job_text);
     checkpoint.n_contacts =

@@ -71,6 +71,7 @@ struct simulation {
     struct migrate migrate;
     struct balance balance;
     double half_buffer; /* least allowance of a search [m] */
+    double asked_most;  /* largest that speeds may ask for at the next one, in radii */
     struct simulation_spent spent;
 
     struct vec3 gravity;        /* at this step [m/s2] */
@@ -110,9 +111,6 @@ void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
 struct runtime_sizes simulation_sizes(const struct simulation *sim);
 /* The rows so far alone.  Collective. */
 int simulation_save_series(struct simulation *sim, const struct run_folder *folder);
-
-/* The group of spheres that another job has left: after those of the job and its insertions. */
-int simulation_chain_group(const struct job *job);
 
 /* Steps in a time, rounded; 1e15 at most.  Local. */
 int64_t simulation_steps(double time, double step);

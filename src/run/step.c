@@ -10,7 +10,7 @@
  *   5 now and then: contacts against the step; energies, forces   watch.h, observe.h
  *     on bodies, sections
  *   6 gravity, integration of owned spheres and bodies to n + 1   physics/integrate.h
- *   7 passages through sections                                   sections.h
+ *   7 passages through sections, into regions that take out       sections.h, removal.h
  *   8 refresh of the ghosts                                       domain/halo.h
  *   9 the one reduction: motion against the buffer, overlap, signals, clock   watch.h
  */
@@ -46,7 +46,8 @@ static int64_t mark_removed(struct simulation *sim, unsigned char *removed)
  * result. */
 static void exchange_spheres(struct simulation *sim)
 {
-    const bool takes = sim->step % REMOVAL_EVERY == 0;
+    const bool takes = sim->step % REMOVAL_EVERY == 0 &&
+                       (sim->removals.n > 0 || sim->job->domain.leavers != JOB_LEAVERS_IGNORE);
     unsigned char *removed = takes ? array_allocate((size_t)sim->spheres.n_owned, 1) : NULL;
     const int64_t n_removed = takes ? mark_removed(sim, removed) : 0;
     const int n_new = insertions_try(sim, removed);
@@ -193,6 +194,7 @@ void step(struct simulation *sim)
     forced_move(sim);
     sim->step++;
     sections_pass(&sim->sections, &sim->spheres);
+    removals_catch(&sim->removals, &sim->spheres, (double)sim->step * sim->dt, sim->dt);
     runtime_end(runtime, RUNTIME_INTEGRATE);
     halo_refresh(&sim->halo, sim->comm, &sim->spheres);
     runtime_end(runtime, RUNTIME_HALO);

@@ -101,13 +101,22 @@ static void add_history(struct table *table, size_t offset, bool full, bool ledg
     table_add_column(table, &sliding, offset + (CONTACT_TWISTING_LANE + 1) * sizeof(double));
 }
 
-static void describe_spheres(struct table *table)
+static bool is_saved(int field, bool removals)
+{
+    return (sphere_fields[field].use & FIELD_SAVED) != 0 &&
+           (field != SPHERE_CAUGHT || removals);
+}
+
+static void describe_spheres(struct table *table, bool removals)
 {
     table_init(table, "spheres", 0, compare_spheres);
     for (int f = 0; f < SPHERE_N_FIELDS; f++) {
-        if ((sphere_fields[f].use & FIELD_SAVED) == 0)
+        if (!is_saved(f, removals))
             continue;
-        table_add_column(table, &sphere_fields[f], table->record_size);
+        if (f == SPHERE_CAUGHT)
+            table_add_optional(table, &sphere_fields[f], table->record_size);
+        else
+            table_add_column(table, &sphere_fields[f], table->record_size);
         table->record_size += field_size(&sphere_fields[f]);
     }
 }
@@ -139,9 +148,10 @@ static void describe_facet_contacts(struct table *table, bool full, bool ledger)
     add_history(table, offsetof(struct facet_contact_record, history), full, ledger);
 }
 
-static void tables_init(struct table tables[N_TABLES], bool full, bool ledger)
+static void tables_init(struct table tables[N_TABLES], const struct checkpoint *checkpoint)
 {
-    describe_spheres(&tables[SPHERES]);
+    const bool full = checkpoint->full, ledger = checkpoint->ledger;
+    describe_spheres(&tables[SPHERES], checkpoint->removals);
     describe_contacts(&tables[CONTACTS], full, ledger);
     describe_facet_contacts(&tables[FACET_CONTACTS], full, ledger);
 }
@@ -180,7 +190,7 @@ static void copy_records(struct table *table, int n, const void *records)
 static void collect(struct table tables[N_TABLES], const struct comm *comm,
                     const struct checkpoint *checkpoint)
 {
-    tables_init(tables, checkpoint->full, checkpoint->ledger);
+    tables_init(tables, checkpoint);
     struct table *spheres = &tables[SPHERES];
     spheres->n = checkpoint->spheres->n_owned;
     spheres->records = array_allocate((size_t)spheres->n, spheres->record_size);
@@ -537,7 +547,7 @@ static char *read_file(const struct comm *comm, const char *path, struct checkpo
 int checkpoint_read(const struct comm *comm, const char *path, struct checkpoint *checkpoint)
 {
     struct table tables[N_TABLES];
-    tables_init(tables, checkpoint->full, checkpoint->ledger);
+    tables_init(tables, checkpoint);
     char *why = read_file(comm, path, checkpoint, tables);
     tables_clear(tables);
     if (why == NULL)

@@ -19,8 +19,9 @@
  *                    names and sums have theirs as attribute `checksum`
  * Nothing in it depends on rank count, machine or clock (those are in the log and the series).
  *
- * Format versions count up: version 1 had no /state.  A program reads its own version and all
- * before; of a newer one it says so.
+ * Format versions count up: version 1 had no /state, version 2 no /spheres/caught, which is
+ * there for jobs with removals.  A program reads its own version and all before; of a newer one
+ * it says so.
  *
  * Writing: space is reserved and agreed on, the file is written under a temporary name, forced
  * to the disk, renamed, its folder forced to the disk.  Reading verifies every checksum.
@@ -39,7 +40,7 @@
 struct comm;
 struct spheres;
 
-enum { CHECKPOINT_FORMAT_VERSION = 2, CHECKPOINT_NAME_SIZE = 64 };
+enum { CHECKPOINT_FORMAT_VERSION = 3, CHECKPOINT_NAME_SIZE = 64 };
 
 struct checkpoint_monitor {
     char name[CHECKPOINT_NAME_SIZE];
@@ -54,6 +55,7 @@ struct checkpoint {
     char *job_text;          /* the job as used (job_write) */
     struct spheres *spheres; /* owned ones are state */
     bool full, ledger;       /* which lanes of history there are: set before reading, too */
+    bool removals;           /* are some spheres to be taken out?  Likewise */
     int n_contacts;          /* records held here: see below */
     struct contact_record *contacts;
     int n_facet_contacts;

@@ -65,6 +65,79 @@ mv gone settled
 rm -rf other
 result "a chained run resumes without the other one"
 
+# ---------------------------------------------------------------- killed before its first checkpoint
+
+# killed OUT: a run from `source` that has begun and is gone before it has a checkpoint.
+killed()
+{
+    local tries=0
+    rm -rf "$1"
+    start 2 "$1" chain $source --set time.end=1000 --set checkpoint.every.steps=0
+    while [ ! -f "$1/status" ] && [ $tries -lt $((patience * 50)) ] && kill -0 "$job" 2> /dev/null; do
+        sleep 0.02
+        tries=$((tries + 1))
+    done
+    kill_ranks
+    [ "$(newest "$1")" = 0 ] || why+=" it had a checkpoint;"
+}
+
+# unusable TEXT: the killed run does not go on, and says this.
+unusable()
+{
+    local status=0
+    tremie 2 run "$scenes/chain.yaml" --out other $source || status=$?
+    [ "$status" = 2 ] || why+=" exit status $status, not 2;"
+    says "start.from: $PWD/source: step_000000003000.h5 $1 since the run"
+    says "or --fresh"
+}
+
+source="--set start.from=$PWD/source"
+mkdir -p source/checkpoints
+cp settled/checkpoints/step_000000002000.h5 source/checkpoints/
+run 2 whole chain $source
+killed other
+cp settled/checkpoints/step_000000003000.h5 source/checkpoints/
+grep -q '^  checkpoint: "*step_000000002000.h5"*$' other/job.yaml || why+=" the job as used does not say from which;"
+run 3 other chain $source
+says "starts from $PWD/source/checkpoints/step_000000002000.h5, step 2000 "
+same_run whole other
+run 1 named chain $source --set start.checkpoint=step_000000002000.h5
+same_run whole named
+run 3 again chain $source --restart other/checkpoints/step_000000000500.h5
+equal {whole,again}/checkpoints/step_000000001000.h5
+result "killed before its first checkpoint it starts from the same"
+
+killed other
+printf x >> source/checkpoints/step_000000003000.h5
+unusable "has changed"
+rm source/checkpoints/step_000000003000.h5
+unusable "has gone"
+run 2 other chain $source --fresh
+says "starts from $PWD/source/checkpoints/step_000000002000.h5, step 2000 "
+equal whole/checkpoints/step_000000001000.h5 other/checkpoints/step_000000001000.h5
+rm -rf other
+result "what it started from has changed or gone"
+
+# ---------------------------------------------------------------- names of groups
+
+tremie 1 check "$scenes/chain.yaml" $from || why+=" check ends with status $?;"
+says "start     $PWD/settled/checkpoints/step_000000003000.h5, step 3000 (0.06 s)"
+says "spheres   fill: 300 of ore, "
+says "spheres   ball: "
+"$bin/tremie-info" chained/checkpoints/step_000000001000.h5 > said
+says "group fill        300 of "
+says "group more        30 of "
+# One of them has a group of the job's own, and goes on in it.
+sed 's/name: more/name: fill/; s/from: settled/from: chained/' "$scenes/chain.yaml" > twice.yaml
+tremie 2 run twice.yaml --out twice --set start.from="$PWD/chained" --set spheres.0.packing.count=5 \
+    --set 'output.snapshots={every: 0.02, fields: [group]}' || why+=" twice ends with status $?;"
+"$bin/tremie-info" twice/checkpoints/step_000000001000.h5 > said
+says "group fill        305 of "
+says "group more        30 of "
+says "group ball        5 of ore, "
+grep -aqx ball twice/snapshots/step_000000001000.h5 || why+=" the snapshot does not name them;"
+result "groups keep their names"
+
 # ---------------------------------------------------------------- spheres from HDF5
 
 sed -e '/^start:/d' -e 's/^spheres:/&\n  - {name: old, material: ore, packing: {kind: hdf5, file: settled\/checkpoints\/step_000000003000.h5}}/' \

@@ -5,6 +5,15 @@ set -uo pipefail
 # shellcheck source=tests/cases/common.sh
 . "$(dirname "$0")/common.sh"
 
+# forget RUN STEP: removes the checkpoints of later steps.
+forget()
+{
+    local file
+    for file in "$1"/checkpoints/step_*.h5; do
+        [[ $file < "$1/checkpoints/step_$(printf %012d $(($2 + 1))).h5" ]] || rm "$file"
+    done
+}
+
 tremie 1 check "$scenes/feed.yaml" || why+=" check gives status $?;"
 says "insert    rain: 180 spheres, "
 says "insert    jet: 44 spheres, 12 kg, "
@@ -47,6 +56,78 @@ status=0
 "$bin/tremie-contents" nowhere > said 2>&1 || status=$?
 [ "$status" = 2 ] || why+=" the status is $status, not 2;"
 result "tremie-contents of nothing"
+
+# ------------------------------------------------------------------ the last occasion
+
+# By number and by mass, rates times durations: 33.3, 36.44 of a stream that ends with the run, 12.3 of
+# one that has no other occasion, 31.83, and 44.8 by the last multiple of 64 of the one without an end.
+cat > counts.yaml << 'END'
+time: {end: 0.05, step: 1.0e-4}
+gravity: [0, 0, 0]
+materials:
+  ore: {density: 2400, young: 5.0e7, poisson: 0.2}
+contact:
+  pairs: [{between: [ore, ore], friction: 0.5, restitution: 0.5}]
+insert:
+  - {name: early, material: ore, radius: 5 mm, region: {kind: box, min: [0, 0, 0], max: [1, 1, 1]},
+     rate: {number: 1000}, until: {time: 0.0333}}
+  - {name: late, material: ore, radius: 5 mm, region: {kind: box, min: [1, 0, 0], max: [2, 1, 1]},
+     rate: {number: 777}, start: 0.0031, every: 50, until: {time: 0.05}}
+  - {name: once, material: ore, radius: 5 mm, region: {kind: box, min: [2, 0, 0], max: [3, 1, 1]},
+     rate: {number: 1000}, every: 1000, until: {time: 0.0123}}
+  - {name: mass, material: ore, radius: 5 mm, region: {kind: box, min: [3, 0, 0], max: [4, 1, 1]},
+     rate: {mass: 1}, every: 7, until: {time: 0.04}}
+  - {name: open, material: ore, radius: 5 mm, region: {kind: box, min: [4, 0, 0], max: [5, 1, 1]},
+     rate: {number: 1000}}
+checkpoint: {every: {wall: 0, steps: 150}, keep: 100}
+output: {series: {every: 0.01}}
+END
+feed_scenes=$scenes scenes=$PWD
+run 1 counts counts
+"$bin/tremie-contents" counts > came
+"$bin/tremie-info" counts/checkpoints/step_000000000500.h5 >> came
+tremie 1 check counts.yaml
+for count in "early 33" "late 36" "once 12" "mass 31" "open 44"; do
+    grep -q "came in by ${count% *}: ${count#* } spheres" came || why+=" by ${count% *} came not ${count#* };"
+    grep -Eq "^  group ${count% *} +${count#* } of ore" came || why+=" of ${count% *} are not ${count#* };"
+    [ "${count% *}" = mass ] || says "insert    ${count% *}: ${count#* } spheres, "
+done
+result "all that is due by until.time comes in"
+
+run 3 other counts --set time.end=0.0332 # between the last two steps of the first stream
+run 2 other counts
+same_run counts other
+says "resumes at step 332 "
+start 2 killed counts --set time.end=50
+wait_until_after killed 200
+kill_ranks
+forget killed 300
+run 3 killed counts
+says "resumes at step 300 "
+same_run counts killed
+rm -rf counts other killed
+scenes=$feed_scenes
+result "and also if the run is killed or made longer"
+
+# ------------------------------------------------------------------ gates thinner than a step
+
+run 1 gates gates
+"$bin/tremie-contents" gates > said 2>&1
+says "taken out by sheet: 6 spheres"
+says "taken out by disc: 10 spheres"
+says "taken out by ball: 10 spheres"
+says "taken out by edge: 10 spheres"
+run 3 other gates --set testing.search_every=7 --set testing.repartition_every=30
+same_run gates other
+result "no gate is passed unseen"
+
+# At step 150 spheres are noted that leave at 192.
+forget other 150
+run 2 other gates
+says "resumes at step 150 "
+same_run gates other
+rm -rf gates other
+result "what is noted between is kept"
 
 # ------------------------------------------------------------------ nothing, something, nothing
 cat > brief.yaml << 'END'

@@ -96,7 +96,7 @@ static void build(struct checkpoint *checkpoint, struct spheres *spheres,
         (struct checkpoint){.step = 1234, .dt = 1e-5, .next_id = N_IDS, .spheres = spheres};
     checkpoint->title = array_string("A heap of \xc3\xa9tain");
     checkpoint->job_text = array_string("title: test\ntime: {end: 1}\n");
-    checkpoint->full = checkpoint->ledger = true;
+    checkpoint->full = checkpoint->ledger = checkpoint->removals = true;
     checkpoint->contacts = array_allocate(2 * N_IDS, sizeof *checkpoint->contacts);
     checkpoint->facet_contacts = array_allocate(2 * N_IDS, sizeof *checkpoint->facet_contacts);
     for (int64_t id = 0; id < N_IDS; id++) {
@@ -195,7 +195,7 @@ static void put_bytes(const char *path, const unsigned char *bytes, size_t n)
 static int read_alone(const char *path, bool *same)
 {
     const struct comm self = alone();
-    struct checkpoint was, is = {.full = true, .ledger = true};
+    struct checkpoint was, is = {.full = true, .ledger = true, .removals = true};
     struct spheres spheres_was, spheres_is;
     build(&was, &spheres_was, &self);
     spheres_init(&spheres_is);
@@ -293,7 +293,8 @@ TEST(state_returns)
     spheres_init(&spheres);
     spheres_init(&expected);
     spheres_reserve(&expected, 1);
-    struct checkpoint checkpoint = {.spheres = &spheres, .full = true, .ledger = true};
+    struct checkpoint checkpoint = {
+        .spheres = &spheres, .full = true, .ledger = true, .removals = true};
     EXPECT(checkpoint_read(&comm, path, &checkpoint) == REPORT_FINISHED);
     EXPECT(checkpoint.step == 1234 && checkpoint.dt == 1e-5 && checkpoint.next_id == N_IDS);
     EXPECT_STRING(checkpoint.job_text, "title: test\ntime: {end: 1}\n");
@@ -322,7 +323,11 @@ TEST(monitors_are_totals)
     EXPECT(write_state(&comm, path) == REPORT_FINISHED);
     struct spheres spheres, all_spheres;
     spheres_init(&spheres);
-    struct checkpoint checkpoint = {.spheres = &spheres, .full = true, .ledger = true}, all;
+    struct checkpoint checkpoint = {.spheres = &spheres,
+                                    .full = true,
+                                    .ledger = true,
+                                    .removals = true},
+                      all;
     build(&all, &all_spheres, &self);
     EXPECT(checkpoint_read(&comm, path, &checkpoint) == REPORT_FINISHED);
     EXPECT(checkpoint.n_monitors == N_MONITORS);
@@ -339,6 +344,26 @@ TEST(monitors_are_totals)
     free(path);
 }
 
+/* As files of before there were marks of removals. */
+TEST(marks_that_are_not_there_are_zero)
+{
+    const struct comm comm = comm_world();
+    char *path = scratch(&comm, "unmarked.h5");
+    struct spheres written, read;
+    struct checkpoint was,
+        is = {.spheres = &read, .full = true, .ledger = true, .removals = true};
+    build(&was, &written, &comm);
+    was.removals = false;
+    EXPECT(checkpoint_write(&comm, path, &was) == REPORT_FINISHED);
+    spheres_init(&read);
+    EXPECT(checkpoint_read(&comm, path, &is) == REPORT_FINISHED);
+    for (int i = 0; i < read.n_owned; i++)
+        EXPECT(read.caught[i] == 0);
+    clear(&was, &written);
+    clear(&is, &read);
+    free(path);
+}
+
 TEST(notes_return)
 {
     const struct comm comm = comm_world();
@@ -346,7 +371,8 @@ TEST(notes_return)
     EXPECT(write_state(&comm, path) == REPORT_FINISHED);
     struct spheres spheres;
     spheres_init(&spheres);
-    struct checkpoint checkpoint = {.spheres = &spheres, .full = true, .ledger = true};
+    struct checkpoint checkpoint = {
+        .spheres = &spheres, .full = true, .ledger = true, .removals = true};
     EXPECT(checkpoint_read(&comm, path, &checkpoint) == REPORT_FINISHED);
     double reals[3], no_reals[2];
     int64_t ints[2], no_ints[3];
@@ -394,7 +420,8 @@ TEST(nothing_at_all)
                                     .title = title,
                                     .job_text = job};
     EXPECT(checkpoint_write(&comm, path, &checkpoint) == REPORT_FINISHED);
-    struct checkpoint read = {.spheres = &spheres, .full = true, .ledger = true};
+    struct checkpoint read = {
+        .spheres = &spheres, .full = true, .ledger = true, .removals = true};
     EXPECT(checkpoint_read(&comm, path, &read) == REPORT_FINISHED);
     EXPECT(spheres.n_owned == 0 && read.n_contacts == 0 && read.n_monitors == 0);
     EXPECT_STRING(read.job_text, "");
@@ -407,7 +434,8 @@ static void expect_refused(const struct comm *comm, const char *path)
 {
     struct spheres spheres;
     spheres_init(&spheres);
-    struct checkpoint checkpoint = {.spheres = &spheres, .full = true, .ledger = true};
+    struct checkpoint checkpoint = {
+        .spheres = &spheres, .full = true, .ledger = true, .removals = true};
     report_init(false);
     EXPECT(checkpoint_read(comm, path, &checkpoint) == REPORT_STORAGE);
     report_init(comm->rank == 0);

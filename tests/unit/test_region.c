@@ -106,6 +106,72 @@ static void end_body(struct region *region)
 }
 
 /* A box of a body is a box: also for points in line with its edges, corners and diagonals. */
+/* A region that reaches further by `more` on all sides. */
+static struct job_region grown(struct job_region asked, double more)
+{
+    const struct vec3 all = {more, more, more}, along = vec3_sub(asked.to, asked.from);
+    const double length = vec3_norm(along), share = length > 0.0 ? more / length : 0.0;
+    asked.min = vec3_sub(asked.min, all);
+    asked.max = vec3_add(asked.max, all);
+    asked.from = vec3_axpy(asked.from, -share, along);
+    asked.to = vec3_axpy(asked.to, share, along);
+    asked.radius += more;
+    return asked;
+}
+
+/* Of random ways those that pass through the region, beside points along them. */
+static void expect_met(struct job_region asked)
+{
+    enum { WAYS = 2000, PARTS = 500 };
+    const double longest = 4.0;
+    const struct region region = simple(asked), more = simple(grown(asked, longest / PARTS));
+    const struct region around = simple(
+        (struct job_region){.kind = JOB_REGION_BOX, .min = {-1, -1, -1}, .max = {1, 1, 1}});
+    int n_through = 0;
+    for (uint64_t k = 0; k < WAYS; k++) {
+        const struct vec3 x = region_point(&around, 0.0, 3, 4, 2 * k),
+                          from = region_point(&around, 0.0, 3, 4, 2 * k + 1),
+                          way = vec3_sub(x, from);
+        bool within = false, near = false;
+        for (int p = 0; p <= PARTS; p++) {
+            const struct vec3 at = vec3_axpy(from, (double)p / PARTS, way);
+            within = within || region_contains(&region, at, 0.0);
+            near = near || region_contains(&more, at, 0.0);
+        }
+        const bool met = region_is_met(&region, x, way);
+        EXPECT(met || !within);
+        EXPECT(!met || near);
+        n_through += met && !region_contains(&region, x, 0.0);
+    }
+    EXPECT(n_through > WAYS / 50 && n_through < WAYS / 2);
+}
+
+TEST(ways_through)
+{
+    expect_met((struct job_region){
+        .kind = JOB_REGION_BOX, .min = {-0.5, -0.4, 0.1}, .max = {0.3, 0.6, 0.1001}});
+    expect_met((struct job_region){
+        .kind = JOB_REGION_BOX, .min = {-0.2, -0.3, -0.1}, .max = {0.4, 0.1, 0.5}});
+    expect_met((struct job_region){.kind = JOB_REGION_CYLINDER,
+                                   .from = {0, 0.1, 0},
+                                   .to = {0.001, 0.102, 0.003},
+                                   .radius = 0.6});
+    expect_met((struct job_region){.kind = JOB_REGION_CYLINDER,
+                                   .from = {-0.8, -0.5, 0},
+                                   .to = {0.6, 0.6, 0.4},
+                                   .radius = 0.1});
+    expect_met((struct job_region){
+        .kind = JOB_REGION_SPHERE, .centre = {0.1, 0.2, -0.1}, .radius = 0.3});
+    /* Along a side, on it and beside it; and no way at all. */
+    const struct region box =
+        simple((struct job_region){.kind = JOB_REGION_BOX, .min = {0, 0, 0}, .max = {1, 1, 1}});
+    const struct vec3 along = {9.0, 0.0, 0.0}, none = {0.0, 0.0, 0.0};
+    EXPECT(region_is_met(&box, (struct vec3){5.0, 1.0, 0.5}, along));
+    EXPECT(!region_is_met(&box, (struct vec3){5.0, 1.0000001, 0.5}, along));
+    EXPECT(region_is_met(&box, (struct vec3){0.5, 0.5, 0.5}, none));
+    EXPECT(!region_is_met(&box, (struct vec3){1.5, 0.5, 0.5}, none));
+}
+
 TEST(inside_of_a_box)
 {
     struct region region, box;
