@@ -374,6 +374,25 @@ static void classes_complete(struct job *job)
     }
 }
 
+/* Where item i of a list begins, if that is in the job file. */
+static struct job_place place_of(const char *job_path, const struct yaml_tree_node *root,
+                                 const char *list, int i)
+{
+    char path[KEY_LENGTH];
+    snprintf(path, sizeof path, "%s.%d", list, i);
+    const struct yaml_tree_node *node = yaml_tree_nearest(root, path);
+    const bool ours = strcmp(node->file, job_path) == 0;
+    return (struct job_place){ours ? node->line : 0, ours ? node->column : 0};
+}
+
+static void places_note(struct job *job, const struct yaml_tree_node *root)
+{
+    for (int i = 0; i < job->n_spheres; i++)
+        job->spheres[i].place = place_of(job->path, root, "spheres", i);
+    for (int i = 0; i < job->n_insertions; i++)
+        job->insertions[i].place = place_of(job->path, root, "insert", i);
+}
+
 /* Fills the job from a complete tree and frees it again when there are mistakes. */
 static bool job_fill(struct job *job, const char *path, const struct yaml_tree_node *root,
                      bool read_files, struct mistakes *mistakes)
@@ -393,10 +412,12 @@ static bool job_fill(struct job *job, const char *path, const struct yaml_tree_n
         materials_prune(job, used);
         classes_complete(job);
     }
-    if (fine)
+    if (fine) {
         pairs_sort(job);
-    else
+        places_note(job, root);
+    } else {
         job_clear(job);
+    }
     free(used);
     free(names);
     return fine;

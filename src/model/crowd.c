@@ -90,35 +90,101 @@ void crowd_add(struct crowd *crowd, struct vec3 x, double radius)
         enter(crowd, s);
 }
 
-static bool is_free(const struct crowd *crowd, int bucket, struct vec3 x, double reach)
+static double square(double x)
 {
-    for (int s = crowd->buckets[bucket]; s >= 0; s = crowd->spheres[s].next) {
-        const struct vec3 apart = vec3_sub(crowd->spheres[s].position, x);
-        const double least = crowd->spheres[s].radius + reach;
-        if (vec3_dot(apart, apart) < least * least)
-            return false;
-    }
-    return true;
+    return x * x;
 }
 
-static bool level_has_room(const struct crowd *crowd, int level, struct vec3 x, double reach)
+static double farther(double offset, double half)
+{
+    return offset < 0.0 ? half - offset : half + offset;
+}
+
+/* Does a sphere of this bucket reach to the farthest corner of a box? */
+static bool bucket_covers(const struct crowd *crowd, int bucket, struct vec3 centre,
+                          struct vec3 half, double reach)
+{
+    for (int s = crowd->buckets[bucket]; s >= 0; s = crowd->spheres[s].next) {
+        const struct vec3 apart = vec3_sub(crowd->spheres[s].position, centre);
+        const double least = crowd->spheres[s].radius + reach;
+        if (square(farther(apart.x, half.x)) + square(farther(apart.y, half.y)) +
+                square(farther(apart.z, half.z)) <
+            least * least)
+            return true;
+    }
+    return false;
+}
+
+/* The cells of a level in which spheres stand that reach x. */
+struct cells {
+    struct cell low, high;
+};
+
+static struct cells cells_near(const struct crowd *crowd, int level, struct vec3 x,
+                               double reach)
 {
     const double edge = crowd->edges[level], far = reach + 0.5 * edge;
     const struct vec3 grow = {far, far, far};
-    const struct cell low = cell_of(vec3_sub(x, grow), edge);
-    const struct cell high = cell_of(vec3_add(x, grow), edge);
-    for (int64_t i = low.i; i <= high.i; i++)
-        for (int64_t j = low.j; j <= high.j; j++)
-            for (int64_t k = low.k; k <= high.k; k++)
-                if (!is_free(crowd, bucket_of(crowd, level, i, j, k), x, reach))
-                    return false;
-    return true;
+    return (struct cells){cell_of(vec3_sub(x, grow), edge), cell_of(vec3_add(x, grow), edge)};
+}
+
+static bool level_covers(const struct crowd *crowd, int level, struct vec3 centre,
+                         struct vec3 half, double reach)
+{
+    const struct cells near = cells_near(crowd, level, centre, reach);
+    for (int64_t i = near.low.i; i <= near.high.i; i++)
+        for (int64_t j = near.low.j; j <= near.high.j; j++)
+            for (int64_t k = near.low.k; k <= near.high.k; k++)
+                if (bucket_covers(crowd, bucket_of(crowd, level, i, j, k), centre, half, reach))
+                    return true;
+    return false;
+}
+
+bool crowd_covers(const struct crowd *crowd, struct vec3 centre, struct vec3 half, double reach)
+{
+    for (int level = 0; level < CROWD_LEVELS; level++)
+        if (crowd->used[level] && level_covers(crowd, level, centre, half, reach))
+            return true;
+    return false;
 }
 
 bool crowd_has_room(const struct crowd *crowd, struct vec3 x, double radius, double gap)
 {
-    for (int level = 0; level < CROWD_LEVELS; level++)
-        if (crowd->used[level] && !level_has_room(crowd, level, x, radius + gap))
-            return false;
-    return true;
+    return !crowd_covers(crowd, x, (struct vec3){0.0, 0.0, 0.0}, radius + gap);
+}
+
+double crowd_overlap(const struct crowd *crowd, int a, int b)
+{
+    const struct crowd_sphere *p = &crowd->spheres[a], *q = &crowd->spheres[b];
+    const double apart = vec3_norm(vec3_sub(p->position, q->position));
+    return 0.5 * (p->radius + q->radius - apart) * (1.0 / p->radius + 1.0 / q->radius);
+}
+
+/* The first entered that overlaps s in a bucket, before `found` if there is one. */
+static int bucket_overlapping(const struct crowd *crowd, int bucket, int s, double share,
+                              int found)
+{
+    const int level = crowd->spheres[s].level;
+    for (int t = crowd->buckets[bucket]; t >= 0; t = crowd->spheres[t].next)
+        if ((crowd->spheres[t].level < level || t < s) && (found < 0 || t < found) &&
+            crowd_overlap(crowd, s, t) > share)
+            found = t;
+    return found;
+}
+
+int crowd_overlapping(const struct crowd *crowd, int s, double share)
+{
+    const struct crowd_sphere *sphere = &crowd->spheres[s];
+    int found = -1;
+    for (int level = 0; level <= sphere->level; level++) {
+        if (!crowd->used[level])
+            continue;
+        const struct cells near = cells_near(crowd, level, sphere->position, sphere->radius);
+        for (int64_t i = near.low.i; i <= near.high.i; i++)
+            for (int64_t j = near.low.j; j <= near.high.j; j++)
+                for (int64_t k = near.low.k; k <= near.high.k; k++)
+                    found = bucket_overlapping(crowd, bucket_of(crowd, level, i, j, k), s,
+                                               share, found);
+    }
+    return found;
 }

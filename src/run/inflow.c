@@ -29,11 +29,17 @@ static bool add_region(const struct job *job, const char *list, const char *name
     return fine;
 }
 
+/* Does it lie in the domain, along directions that do not repeat? */
 static bool region_is_in_domain(const struct job *job, const struct region *region)
 {
     const struct vec3 low = job->domain.min, high = job->domain.max;
-    return region->low.x >= low.x && region->low.y >= low.y && region->low.z >= low.z &&
-           region->high.x <= high.x && region->high.y <= high.y && region->high.z <= high.z;
+    const bool along[3] = {region->low.x >= low.x && region->high.x <= high.x,
+                           region->low.y >= low.y && region->high.y <= high.y,
+                           region->low.z >= low.z && region->high.z <= high.z};
+    bool inside = true;
+    for (int k = 0; k < 3; k++)
+        inside = inside && (along[k] || (job->domain.periodic & 1 << k) != 0);
+    return inside;
 }
 
 /* Does the region hold a sphere of this radius anywhere, as far as many attempts tell? */
