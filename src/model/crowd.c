@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "model/periodic.h"
 
 enum { BUCKETS_AT_FIRST = 1024 };
 
@@ -90,6 +91,28 @@ void crowd_add(struct crowd *crowd, struct vec3 x, double radius)
         enter(crowd, s);
 }
 
+static bool is_near_domain(const struct periodic *p, struct vec3 x, double reach)
+{
+    const double at[3] = {x.x, x.y, x.z};
+    for (int c = 0; c < 3; c++)
+        if (p->along[c] && !(at[c] >= p->low[c] - reach && at[c] <= p->high[c] + reach))
+            return false;
+    return true;
+}
+
+void crowd_add_repeated(struct crowd *crowd, const struct periodic *periodic, struct vec3 x,
+                        double radius, double reach)
+{
+    double shifts[PERIODIC_IMAGES][3];
+    const int n = periodic_shifts(periodic, shifts);
+    for (int s = 0; s < n; s++) {
+        const struct vec3 shift = {shifts[s][0], shifts[s][1], shifts[s][2]};
+        const struct vec3 image = vec3_add(x, shift);
+        if (s == 0 || is_near_domain(periodic, image, reach))
+            crowd_add(crowd, image, radius);
+    }
+}
+
 static double square(double x)
 {
     return x * x;
@@ -100,19 +123,24 @@ static double farther(double offset, double half)
     return offset < 0.0 ? half - offset : half + offset;
 }
 
-/* Does a sphere of this bucket reach to the farthest corner of a box? */
-static bool bucket_covers(const struct crowd *crowd, int bucket, struct vec3 centre,
-                          struct vec3 half, double reach)
+/* It reaches to the farthest corner. */
+bool crowd_covers(const struct crowd *crowd, int s, struct vec3 centre, struct vec3 half,
+                  double reach)
 {
-    for (int s = crowd->buckets[bucket]; s >= 0; s = crowd->spheres[s].next) {
-        const struct vec3 apart = vec3_sub(crowd->spheres[s].position, centre);
-        const double least = crowd->spheres[s].radius + reach;
-        if (square(farther(apart.x, half.x)) + square(farther(apart.y, half.y)) +
-                square(farther(apart.z, half.z)) <
-            least * least)
-            return true;
-    }
-    return false;
+    const struct vec3 apart = vec3_sub(crowd->spheres[s].position, centre);
+    const double least = crowd->spheres[s].radius + reach;
+    return square(farther(apart.x, half.x)) + square(farther(apart.y, half.y)) +
+               square(farther(apart.z, half.z)) <
+           least * least;
+}
+
+static int bucket_covering(const struct crowd *crowd, int bucket, struct vec3 centre,
+                           struct vec3 half, double reach)
+{
+    int s = crowd->buckets[bucket];
+    while (s >= 0 && !crowd_covers(crowd, s, centre, half, reach))
+        s = crowd->spheres[s].next;
+    return s;
 }
 
 /* The cells of a level in which spheres stand that reach x. */
@@ -128,29 +156,32 @@ static struct cells cells_near(const struct crowd *crowd, int level, struct vec3
     return (struct cells){cell_of(vec3_sub(x, grow), edge), cell_of(vec3_add(x, grow), edge)};
 }
 
-static bool level_covers(const struct crowd *crowd, int level, struct vec3 centre,
-                         struct vec3 half, double reach)
+static int level_covering(const struct crowd *crowd, int level, struct vec3 centre,
+                          struct vec3 half, double reach)
 {
     const struct cells near = cells_near(crowd, level, centre, reach);
-    for (int64_t i = near.low.i; i <= near.high.i; i++)
-        for (int64_t j = near.low.j; j <= near.high.j; j++)
-            for (int64_t k = near.low.k; k <= near.high.k; k++)
-                if (bucket_covers(crowd, bucket_of(crowd, level, i, j, k), centre, half, reach))
-                    return true;
-    return false;
+    int s = -1;
+    for (int64_t i = near.low.i; i <= near.high.i && s < 0; i++)
+        for (int64_t j = near.low.j; j <= near.high.j && s < 0; j++)
+            for (int64_t k = near.low.k; k <= near.high.k && s < 0; k++)
+                s = bucket_covering(crowd, bucket_of(crowd, level, i, j, k), centre, half,
+                                    reach);
+    return s;
 }
 
-bool crowd_covers(const struct crowd *crowd, struct vec3 centre, struct vec3 half, double reach)
+int crowd_covering(const struct crowd *crowd, struct vec3 centre, struct vec3 half,
+                   double reach)
 {
-    for (int level = 0; level < CROWD_LEVELS; level++)
-        if (crowd->used[level] && level_covers(crowd, level, centre, half, reach))
-            return true;
-    return false;
+    int s = -1;
+    for (int level = 0; level < CROWD_LEVELS && s < 0; level++)
+        if (crowd->used[level])
+            s = level_covering(crowd, level, centre, half, reach);
+    return s;
 }
 
 bool crowd_has_room(const struct crowd *crowd, struct vec3 x, double radius, double gap)
 {
-    return !crowd_covers(crowd, x, (struct vec3){0.0, 0.0, 0.0}, radius + gap);
+    return crowd_covering(crowd, x, (struct vec3){0.0, 0.0, 0.0}, radius + gap) < 0;
 }
 
 double crowd_overlap(const struct crowd *crowd, int a, int b)

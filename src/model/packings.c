@@ -129,29 +129,11 @@ static struct place_order *order_of(const struct packing *packing)
     return order;
 }
 
-/* Could a sphere here come near one that is in the domain? */
-static bool is_near_domain(const struct builder *builder, struct vec3 x, double reach)
-{
-    const double at[3] = {x.x, x.y, x.z};
-    const struct periodic *p = &builder->periodic;
-    for (int c = 0; c < 3; c++)
-        if (p->along[c] && !(at[c] >= p->low[c] - reach && at[c] <= p->high[c] + reach))
-            return false;
-    return true;
-}
-
 /* A sphere stands in the way where it is, and where it appears across periodic boundaries. */
 static void enter(struct builder *builder, struct vec3 x, double radius, double gap)
 {
-    double shifts[PERIODIC_IMAGES][3];
-    const double reach = radius + builder->radius + gap;
-    const int n = periodic_shifts(&builder->periodic, shifts);
-    for (int s = 0; s < n; s++) {
-        const struct vec3 shift = {shifts[s][0], shifts[s][1], shifts[s][2]};
-        const struct vec3 image = vec3_add(x, shift);
-        if (s == 0 || is_near_domain(builder, image, reach))
-            crowd_add(&builder->crowd, image, radius);
-    }
+    crowd_add_repeated(&builder->crowd, &builder->periodic, x, radius,
+                       radius + builder->radius + gap);
 }
 
 /* Is no place left in a box for a centre, because of the surfaces or the insides of bodies? */
@@ -181,19 +163,22 @@ static bool is_taken(const void *context, struct vec3 centre, struct vec3 half)
     const double gap = filling->packing->group->gap;
     const double far = vec3_norm(half) * (1.0 + HAIR), radius = filling->radius * (1.0 - HAIR);
     const struct vec3 place = periodic_settled(&filling->builder->periodic, centre);
-    return crowd_covers(&filling->builder->crowd, place, half, radius + gap) ||
+    return crowd_covering(&filling->builder->crowd, place, half, radius + gap) >= 0 ||
            (far < radius && !region_contains(&filling->region, centre, radius - far)) ||
            bodies_take(filling, place, far, radius + gap);
 }
 
-/* Is there room for a sphere?  Then it is entered.  The cheapest question comes first. */
-static bool try_place(struct filling *filling, struct packing_sphere *sphere, struct vec3 x)
+/* Is there room for a sphere?  Then it is entered; else *blocker is who is in the way, of the
+ * crowd, or -1.  The cheapest question comes first. */
+static bool try_place(struct filling *filling, struct packing_sphere *sphere, struct vec3 x,
+                      int *blocker)
 {
+    static const struct vec3 POINT = {0.0, 0.0, 0.0};
     struct builder *builder = filling->builder;
     const double gap = filling->packing->group->gap, radius = sphere->radius;
     const struct vec3 place = periodic_settled(&builder->periodic, x);
-    if (!crowd_has_room(&builder->crowd, place, radius, gap) ||
-        !region_contains(&filling->region, x, radius) ||
+    *blocker = crowd_covering(&builder->crowd, place, POINT, radius + gap);
+    if (*blocker >= 0 || !region_contains(&filling->region, x, radius) ||
         bodies_take(filling, place, 0.0, radius + gap))
         return false;
     sphere->position = place;
@@ -232,11 +217,22 @@ static void begin_scarcity(struct filling *filling, const struct place_order *or
     vacancy_open(&filling->vacancy, region->low, region->high, filling->radius);
 }
 
-/* Drops what is known to be taken; false where no cell is left. */
-static bool learn(struct filling *filling, int64_t cell, int64_t attempt)
+/* Drops a cell in which an attempt failed if it is known to be taken, by who was in the way
+ * there if somebody was; false where no cell is left. */
+static bool learn(struct filling *filling, int64_t cell, int blocker, int64_t attempt)
 {
+    const struct builder *builder = filling->builder;
     struct vacancy *vacancy = &filling->vacancy;
-    if (!vacancy_drop(vacancy, cell, is_taken, filling))
+    struct vec3 half;
+    const struct vec3 centre = vacancy_box(vacancy, cell, &half);
+    const double reach = filling->radius + filling->packing->group->gap;
+    const bool taken =
+        blocker < 0 ? is_taken(filling, centre, half)
+                    : crowd_covers(&builder->crowd, blocker,
+                                   periodic_settled(&builder->periodic, centre), half, reach);
+    if (taken)
+        vacancy_drop(vacancy, cell);
+    else
         filling->n_failed++;
     if (filling->n_failed > vacancy->n || (attempt + 1) % ATTEMPTS_UNCUT == 0) {
         vacancy_cut(vacancy, is_taken, filling);
@@ -256,13 +252,14 @@ static bool place_among_cells(struct filling *filling, struct packing_sphere *sp
     for (int64_t attempt = 0; attempt < attempts && vacancy->n > 0; attempt++) {
         const uint64_t counter = 4 * ((uint64_t)k * (uint64_t)attempts + (uint64_t)attempt);
         double part[4];
+        int blocker;
         for (int c = 0; c < 4; c++)
             part[c] = random_unit(seed, stream, counter + (uint64_t)c);
         const int64_t drawn = (int64_t)(part[3] * (double)vacancy->n);
         const int64_t cell = drawn < vacancy->n ? drawn : vacancy->n - 1;
-        if (try_place(filling, sphere, vacancy_point(vacancy, cell, part)))
+        if (try_place(filling, sphere, vacancy_point(vacancy, cell, part), &blocker))
             return true;
-        if (!learn(filling, cell, attempt))
+        if (!learn(filling, cell, blocker, attempt))
             return false;
     }
     return false;
@@ -276,9 +273,11 @@ static bool place_anywhere(struct filling *filling, struct packing_sphere *spher
     for (int64_t attempt = 0; attempt < group->attempts && attempt < ATTEMPTS_ANYWHERE;
          attempt++) {
         const uint64_t counter = (uint64_t)k * (uint64_t)group->attempts + (uint64_t)attempt;
+        int blocker;
         if (try_place(filling, sphere,
                       region_point(&filling->region, sphere->radius, (uint64_t)job->seed,
-                                   stream, counter)))
+                                   stream, counter),
+                      &blocker))
             return true;
     }
     return false;
@@ -381,27 +380,18 @@ static bool is_random(const struct packing *packing)
     return packing->group->packing == JOB_PACKING_RANDOM;
 }
 
-/* The greatest radius of a group. */
-static double greatest_radius(const struct packing *packing)
-{
-    double most = packing->sizes.max;
-    for (int64_t k = 0; packing->rows != NULL && k < packing->n; k++)
-        most = packing->rows[k].radius > most ? packing->rows[k].radius : most;
-    return most;
-}
-
 /* Surfaces of the bodies that some group keeps clear of: of those that are there. */
 static void builder_init(struct builder *builder, const struct packings *packings,
                          const struct job *job, const struct bodies *bodies,
                          const struct packing *before)
 {
     const size_t n = (size_t)bodies->n;
-    double radius = greatest_radius(before);
+    double radius = packing_greatest(before);
     bool avoid = false;
     *builder = (struct builder){
         .job = job, .bodies = bodies, .surfaces = array_allocate(n, sizeof(void *))};
     for (int g = 0; g < packings->n; g++) {
-        const double most = greatest_radius(&packings->groups[g]);
+        const double most = packing_greatest(&packings->groups[g]);
         radius = most > radius ? most : radius;
         builder->gap = job->spheres[g].gap > builder->gap ? job->spheres[g].gap : builder->gap;
         avoid = avoid || (is_random(&packings->groups[g]) && job->spheres[g].avoid_bodies);

@@ -48,25 +48,26 @@ void vacancy_close(struct vacancy *vacancy)
     *vacancy = (struct vacancy){0};
 }
 
-static bool is_taken(const struct vacancy *vacancy, struct vacancy_cell cell,
-                     vacancy_taken *taken, const void *context)
+static struct vec3 point_of(const struct vacancy *vacancy, struct vacancy_cell cell,
+                            const double part[3])
 {
-    const struct vec3 half = vec3_scale(0.5, vacancy->edge);
-    const struct vec3 centre = {vacancy->low.x + (cell.at[0] + 0.5) * vacancy->edge.x,
-                                vacancy->low.y + (cell.at[1] + 0.5) * vacancy->edge.y,
-                                vacancy->low.z + (cell.at[2] + 0.5) * vacancy->edge.z};
-    return taken(context, centre, half);
+    return (struct vec3){vacancy->low.x + (cell.at[0] + part[0]) * vacancy->edge.x,
+                         vacancy->low.y + (cell.at[1] + part[1]) * vacancy->edge.y,
+                         vacancy->low.z + (cell.at[2] + part[2]) * vacancy->edge.z};
 }
+
+static const double MIDDLE[3] = {0.5, 0.5, 0.5};
 
 /* Adds what is not taken of the eight parts of a cell; false where there is no place left. */
 static bool add_parts(struct vacancy *finer, struct vacancy_cell whole, vacancy_taken *taken,
                       const void *context)
 {
+    const struct vec3 half = vec3_scale(0.5, finer->edge);
     for (uint32_t part = 0; part < 8; part++) {
         const struct vacancy_cell cell = {{2 * whole.at[0] + (part & 1),
                                            2 * whole.at[1] + (part >> 1 & 1),
                                            2 * whole.at[2] + (part >> 2)}};
-        if (is_taken(finer, cell, taken, context))
+        if (taken(context, point_of(finer, cell, MIDDLE), half))
             continue;
         if (finer->n == CELLS_MOST)
             return false;
@@ -92,17 +93,16 @@ bool vacancy_cut(struct vacancy *vacancy, vacancy_taken *taken, const void *cont
 
 struct vec3 vacancy_point(const struct vacancy *vacancy, int64_t cell, const double part[3])
 {
-    const uint32_t *at = vacancy->cells[cell].at;
-    return (struct vec3){vacancy->low.x + (at[0] + part[0]) * vacancy->edge.x,
-                         vacancy->low.y + (at[1] + part[1]) * vacancy->edge.y,
-                         vacancy->low.z + (at[2] + part[2]) * vacancy->edge.z};
+    return point_of(vacancy, vacancy->cells[cell], part);
 }
 
-bool vacancy_drop(struct vacancy *vacancy, int64_t cell, vacancy_taken *taken,
-                  const void *context)
+struct vec3 vacancy_box(const struct vacancy *vacancy, int64_t cell, struct vec3 *half)
 {
-    if (!is_taken(vacancy, vacancy->cells[cell], taken, context))
-        return false;
+    *half = vec3_scale(0.5, vacancy->edge);
+    return point_of(vacancy, vacancy->cells[cell], MIDDLE);
+}
+
+void vacancy_drop(struct vacancy *vacancy, int64_t cell)
+{
     vacancy->cells[cell] = vacancy->cells[--vacancy->n];
-    return true;
 }

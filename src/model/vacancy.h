@@ -33,8 +33,9 @@ void vacancy_close(struct vacancy *vacancy);
 bool vacancy_cut(struct vacancy *vacancy, vacancy_taken *taken, const void *context);
 /* A cell's point, at these parts of its sides. */
 struct vec3 vacancy_point(const struct vacancy *vacancy, int64_t cell, const double part[3]);
-/* Drops a cell if it is taken; the last one gets its number. */
-bool vacancy_drop(struct vacancy *vacancy, int64_t cell, vacancy_taken *taken,
-                  const void *context);
+/* Its centre, and half of its sides. */
+struct vec3 vacancy_box(const struct vacancy *vacancy, int64_t cell, struct vec3 *half);
+/* Drops it; the last one gets its number. */
+void vacancy_drop(struct vacancy *vacancy, int64_t cell);
 
 #endif

@@ -19,6 +19,7 @@
 #include "run/inflow.h"
 #include "run/limits.h"
 #include "run/simulation.h"
+#include "run/start.h"
 #include "run/step.h"
 #include "run/survey.h"
 #include "store/crc32.h"
@@ -312,6 +313,7 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
         add_bodies(&bodies, &scene);
         inflow_check(job, &bodies, &scene.low, &scene.high, mistakes);
         choose_domain(job, &scene);
+        start_check(job, &bodies, &packings, &before.packing, mistakes);
         for (int k = 0; k < job->n_insertions; k++) {
             const double incoming = inflow_of(job, k).speed;
             speed = incoming > speed ? incoming : speed;

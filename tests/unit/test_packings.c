@@ -359,7 +359,7 @@ TEST(no_room)
         mistakes.n == 1 &&
         strstr(mistakes.list[0].text,
                "spheres 'fill': random addition was asked for 55 % of the region's volume "
-               "(1050 spheres) and reached 34.7 % (662): no room is left for the next; less, "
+               "(1050 spheres) and reached 34.7 % (663): no room is left for the next; less, "
                "a lattice, or letting them settle is expected") != NULL);
     mistakes_clear(&mistakes);
     groups[0].fraction = 0.0;
