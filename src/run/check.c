@@ -320,6 +320,8 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
         }
         if (job->time.step == 0.0)
             choose_times(job, &packings, &before.packing, foresee_speed(job, &bodies, speed));
+        if (mistakes->n == 0)
+            inflow_check_room(job, &bodies, mistakes);
     }
     packings_close(&packings);
     chain_close(&before);
@@ -578,6 +580,7 @@ void check_print(const struct job *job, const struct comm *comm)
     const int64_t n = print_groups(job, &bodies, &scene, &radius_most);
     survey_print(job, &bodies);
     warn_of_ends(job, &bodies, radius_most);
+    inflow_warn(job, &bodies);
     add_bodies(&bodies, &scene);
     bodies_clear(&bodies);
     print_extent("scene    ", &scene);

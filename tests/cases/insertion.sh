@@ -2,6 +2,7 @@
 # What a user meets of insertion, removal and contents: what `check` foresees, how a full region is
 # called, the tool that shows them, a stream that stops and starts from nothing.
 set -uo pipefail
+root=$PWD
 # shellcheck source=tests/cases/common.sh
 . "$(dirname "$0")/common.sh"
 
@@ -114,3 +115,16 @@ awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) column[$k] = k }
               $column["roll_inside.count"] == 0 && low > 10 && high > 10) }' \
     contents.csv || why+=" $(tail -n 1 contents.csv);"
 result "none comes in inside a closed body, and some at a periodic boundary"
+
+# ------------------------------------------------------------------ room, before the run
+sed '/^domain:/i remove: [{name: all, region: {kind: box, min: [0, 0, 0.08], max: [0.2, 0.2, 0.1]}}]' \
+    "$root/tests/cases/bad/insert_full.yaml" > likely.yaml
+tremie 1 check likely.yaml || why+=" check gives status $?;"
+says "warning: insert 'jam': of 2e+04 spheres a second, which stay in the region for 0.0496 s"
+says "991.2 would be there at a time, 104 % of its volume, where at most 38.4 % find room at random; it will stop the run: "
+sed 's/when_full: stop, //; s/end: 1.0/end: 0.005/' "$root/tests/cases/bad/insert_full.yaml" > waits.yaml
+run 2 waits waits
+says "warning: insert 'burst': of 1e+05 spheres a second, "
+says "it will fall behind: enlarge the region, "
+grep -q "insert 'fine'" said && why+=" warns of one that is fine;"
+result "a region too full, foreseen"
