@@ -362,8 +362,8 @@ static const struct schema_key geometry_keys[] = {
      .standard = "72", BETWEEN(3.0, 10000.0), .word = "exact", .word_value = 0.0,
      .kinds = ROUND, AT(struct job_body, segments)},
     {"file", SCHEMA_FILE,
-     "the file, relative to the job file: STL, ASCII or binary, or Gmsh's .msh, 2.2 or 4.1 in "
-     "ASCII",
+     "the file, relative to the job file: STL or Gmsh's .msh of format 2.2 or 4.1, each ASCII "
+     "or binary (little-endian)",
      .required = true, .kinds = FILES, AT(struct job_body, file)},
     {"sum", SCHEMA_COUNT,
      "checksum of the file (CRC-32), filled in by the program: a run is not resumed with "
