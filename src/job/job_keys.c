@@ -646,7 +646,9 @@ static const struct schema_key section_keys[] = {
      .standard = "[]", .choices = splits, AT(struct job_section, by)},
     {"classes", SCHEMA_NUMBERS,
      "radii between the size classes, ascending; with `by: size` and none given, half way "
-     "between the radii that groups and insertions name (if these make at most 32 classes)",
+     "between the radii that groups and insertions name, at the radii of a `table`, and of "
+     "another distribution seven between min and max in steps of one ratio, so that it has eight "
+     "classes; at most 32 classes in all come so",
      .unit = "m", ABOVE_TO(0.0, FAR), GIVEN(struct job_section, classes),
      LIST_AT(struct job_section, classes, n_classes)},
     END};
