@@ -5,8 +5,8 @@
  * are found by bisection.  Counts are believed only as far as the file is long.
  *
  * In a binary file entities, nodes and elements are the same numbers as in text, as bytes, most
- * of them of four, in 4.1 counts and tags of nodes and elements of eight; 2.2 counts in text and
- * gathers elements of a type into blocks.  Bytes are taken as this machine's: the least first.
+ * of them of four, in 4.1 counts and tags of nodes and elements of eight; 2.2 counts in text
+ * and gathers elements of a type into blocks.  The least byte comes first, as in this machine.
  *
  * Format: https://gmsh.info/doc/texinfo/gmsh.html#File-formats, chapters "MSH file format" and
  * "MSH file format version 2 (Legacy)".

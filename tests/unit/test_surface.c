@@ -106,7 +106,8 @@ static void put_bytes(struct file *file, const void *bytes, size_t n)
     file->n += n;
 }
 
-/* The next n numbers of a text, as doubles or whole numbers of 4 or 8 bytes; returns the last. */
+/* The next n numbers of a text, as doubles, or whole numbers of 4 or 8 bytes: d, i, l; returns
+ * the last. */
 static int64_t put_numbers(struct file *file, const char **text, char kind, int64_t n)
 {
     double value = 0.0;
