@@ -12,13 +12,14 @@
 
 /* What numbers are drawn for: each purpose has streams of its own. */
 enum random_purpose {
-    RANDOM_PACKING_SIZES = 1,   /* radii of a group at the start */
-    RANDOM_PACKING_PLACES,      /* their places */
-    RANDOM_PACKING_MATERIALS,   /* what each is made of */
-    RANDOM_INSERTION_SIZES,     /* the same of an insertion */
-    RANDOM_INSERTION_PLACES,    /* places that it tries */
-    RANDOM_INSERTION_MATERIALS, /* what each is made of */
-    RANDOM_INSERTION_VELOCITIES /* by how much its velocity differs */
+    RANDOM_PACKING_SIZES = 1,    /* radii of a group at the start */
+    RANDOM_PACKING_PLACES,       /* their places */
+    RANDOM_PACKING_MATERIALS,    /* what each is made of */
+    RANDOM_INSERTION_SIZES,      /* the same of an insertion */
+    RANDOM_INSERTION_PLACES,     /* places that it tries */
+    RANDOM_INSERTION_MATERIALS,  /* what each is made of */
+    RANDOM_INSERTION_VELOCITIES, /* by how much its velocity differs */
+    RANDOM_PACKING_VACANCIES     /* places of the first group again, once space is scarce */
 };
 
 /* The stream of one item (the 3rd group, the 1st insertion) for a purpose. */

@@ -8,6 +8,7 @@
  */
 #include "job/job.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -331,47 +332,139 @@ static int compare_doubles(const void *a, const void *b)
     return (*p > *q) - (*p < *q);
 }
 
-/* Radii that groups and insertions have, as far as the job lists them. */
+/* Radii, or radii between size classes. */
 struct radii {
     int n, capacity;
     double *list;
 };
 
-static void radii_add(struct radii *radii, double radius, const struct job_sizes *sizes)
+static void radii_add(struct radii *radii, double radius)
 {
-    ARRAY_GROW(radii->list, radii->n + sizes->n + 1, radii->capacity);
-    if (radius > 0.0)
-        radii->list[radii->n++] = radius;
-    for (int k = 0; sizes->kind == JOB_SIZES_LIST && k < sizes->n; k++)
-        radii->list[radii->n++] = sizes->list[k].radius;
+    ARRAY_GROW(radii->list, radii->n + 1, radii->capacity);
+    radii->list[radii->n++] = radius;
 }
 
-/* The radii half way between those; *n_classes of them, none where there are too many. */
-static double *classes_between(const struct job *job, int *n_classes)
+/* Puts them in order and each once. */
+static void radii_sort(struct radii *radii)
 {
-    struct radii radii = {0};
     int n = 0;
+    if (radii->n == 0)
+        return;
+    qsort(radii->list, (size_t)radii->n, sizeof *radii->list, compare_doubles);
+    for (int k = 0; k < radii->n; k++)
+        if (n == 0 || radii->list[k] > radii->list[n - 1])
+            radii->list[n++] = radii->list[k];
+    radii->n = n;
+}
+
+/* What the job says of radii: those that it names, the limits of distributions between two,
+ * and what divides these: the radii of a cumulative curve; of others seven between their
+ * limits, each the geometric mean of its neighbours. */
+struct all_radii {
+    struct radii named, limits, bounds;
+};
+
+static void divide(struct radii *bounds, double low, double high, int times)
+{
+    if (times == 0)
+        return;
+    const double middle = sqrt(low * high);
+    radii_add(bounds, middle);
+    divide(bounds, low, middle, times - 1);
+    divide(bounds, middle, high, times - 1);
+}
+
+static void add_item(struct all_radii *all, double radius, const struct job_sizes *sizes)
+{
+    enum { HALVINGS = 3 };
+    const bool table = sizes->given && sizes->kind == JOB_SIZES_TABLE;
+    if (radius > 0.0)
+        radii_add(&all->named, radius);
+    for (int k = 0; sizes->kind == JOB_SIZES_LIST && k < sizes->n; k++)
+        radii_add(&all->named, sizes->list[k].radius);
+    if (!sizes->given || sizes->kind == JOB_SIZES_LIST)
+        return;
+    radii_add(&all->limits, table ? sizes->list[0].radius : sizes->min);
+    radii_add(&all->limits, table ? sizes->list[sizes->n - 1].radius : sizes->max);
+    for (int k = 1; table && k < sizes->n - 1; k++)
+        radii_add(&all->bounds, sizes->list[k].radius);
+    if (!table)
+        divide(&all->bounds, sizes->min, sizes->max, HALVINGS);
+}
+
+/* Is there a radius or a limit between two? */
+static bool has_between(const struct all_radii *all, double low, double high)
+{
+    bool any = false;
+    for (int k = 0; k < all->named.n; k++)
+        any = any || (all->named.list[k] > low && all->named.list[k] < high);
+    for (int k = 0; k < all->limits.n; k++)
+        any = any || (all->limits.list[k] > low && all->limits.list[k] < high);
+    return any;
+}
+
+/* The bounds of size classes where a section names none; n of them, the list to be freed. */
+static struct radii classes_of(const struct job *job)
+{
+    struct all_radii all = {{0}, {0}, {0}};
     for (int g = 0; g < job->n_spheres; g++)
-        radii_add(&radii, job->spheres[g].radius, &job->spheres[g].sizes);
+        add_item(&all, job->spheres[g].radius, &job->spheres[g].sizes);
     for (int g = 0; g < job->n_insertions; g++)
-        radii_add(&radii, job->insertions[g].radius, &job->insertions[g].sizes);
-    if (radii.n > 0)
-        qsort(radii.list, (size_t)radii.n, sizeof *radii.list, compare_doubles);
-    for (int k = 1; k < radii.n; k++)
-        if (radii.list[k - 1] < radii.list[k])
-            radii.list[n++] = 0.5 * (radii.list[k - 1] + radii.list[k]);
-    *n_classes = n < MAX_CLASSES ? n : 0;
-    return radii.list;
+        add_item(&all, job->insertions[g].radius, &job->insertions[g].sizes);
+    radii_sort(&all.named);
+    radii_sort(&all.limits);
+    for (int k = 1; k < all.named.n; k++)
+        radii_add(&all.bounds, 0.5 * (all.named.list[k - 1] + all.named.list[k]));
+    for (int k = 0; k < all.limits.n; k++) /* where there are radii on either side of them */
+        if (has_between(&all, -HUGE_VAL, all.limits.list[k]) &&
+            has_between(&all, all.limits.list[k], HUGE_VAL))
+            radii_add(&all.bounds, all.limits.list[k]);
+    radii_sort(&all.bounds);
+    free(all.named.list);
+    free(all.limits.list);
+    return all.bounds;
 }
 
 /* Gives size classes to the sections that ask for them and name none. */
-static void classes_complete(struct job *job)
+static void classes_complete(struct job *job, const struct yaml_tree_node *root,
+                             struct mistakes *mistakes)
 {
     for (int s = 0; s < job->n_sections; s++) {
         struct job_section *section = &job->sections[s];
-        if ((section->by & JOB_SPLIT_SIZE) != 0 && section->classes == NULL)
-            section->classes = classes_between(job, &section->n_classes);
+        if ((section->by & JOB_SPLIT_SIZE) == 0 || section->classes != NULL)
+            continue;
+        const struct radii bounds = classes_of(job);
+        section->classes = bounds.list;
+        section->n_classes = bounds.n;
+        if (bounds.n < MAX_CLASSES)
+            continue;
+        char path[KEY_LENGTH];
+        snprintf(path, sizeof path, "sections.%d.by", s);
+        const struct yaml_tree_node *node = yaml_tree_nearest(root, path);
+        mistakes_add(mistakes, node->file, node->line, node->column,
+                     "%s: the radii of the job make %d size classes, more than %d; classes "
+                     "are expected",
+                     path, bounds.n + 1, MAX_CLASSES);
     }
+}
+
+/* Where item i of a list begins, if that is in the job file. */
+static struct job_place place_of(const char *job_path, const struct yaml_tree_node *root,
+                                 const char *list, int i)
+{
+    char path[KEY_LENGTH];
+    snprintf(path, sizeof path, "%s.%d", list, i);
+    const struct yaml_tree_node *node = yaml_tree_nearest(root, path);
+    const bool ours = strcmp(node->file, job_path) == 0;
+    return (struct job_place){ours ? node->line : 0, ours ? node->column : 0};
+}
+
+static void places_note(struct job *job, const struct yaml_tree_node *root)
+{
+    for (int i = 0; i < job->n_spheres; i++)
+        job->spheres[i].place = place_of(job->path, root, "spheres", i);
+    for (int i = 0; i < job->n_insertions; i++)
+        job->insertions[i].place = place_of(job->path, root, "insert", i);
 }
 
 /* Fills the job from a complete tree and frees it again when there are mistakes. */
@@ -388,15 +481,18 @@ static bool job_fill(struct job *job, const char *path, const struct yaml_tree_n
     job->name = job_name(path);
     bool *used = array_allocate((size_t)job->n_materials, sizeof *used);
     job_check(job, root, read_files, used, mistakes);
-    const bool fine = mistakes->n == 0;
+    bool fine = mistakes->n == 0;
     if (fine && read_files) {
         materials_prune(job, used);
-        classes_complete(job);
+        classes_complete(job, root, mistakes);
+        fine = mistakes->n == 0;
     }
-    if (fine)
+    if (fine) {
         pairs_sort(job);
-    else
+        places_note(job, root);
+    } else {
         job_clear(job);
+    }
     free(used);
     free(names);
     return fine;

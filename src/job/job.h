@@ -14,6 +14,11 @@
 
 struct mistakes;
 
+/* Where an item begins in the job file, for messages; 0: not there.  Not a key. */
+struct job_place {
+    int line, column;
+};
+
 struct job_material {
     char *name;
     double density; /* [kg/m3] */
@@ -118,6 +123,7 @@ struct job_spheres {
      * radius and, where given, velocity, angular_velocity. */
     char *file;
     int64_t sum; /* checksum of that file */
+    struct job_place place;
 };
 
 enum job_velocities { JOB_VELOCITIES_KEEP, JOB_VELOCITIES_ZERO };
@@ -341,6 +347,7 @@ struct job_insertion {
     double until_time;        /* [s] */
     enum job_full full;
     int by; /* set of enum job_split */
+    struct job_place place;
 };
 
 enum job_direction { JOB_DIRECTION_X = 1, JOB_DIRECTION_Y = 2, JOB_DIRECTION_Z = 4 };

@@ -253,21 +253,27 @@ static const struct schema_key packing_keys[] = {
      AT(struct job_spheres, mass)},
     {"fraction", SCHEMA_NUMBER,
      "instead of count: their volume over that of the region; equal spheres added at random "
-     "reach some 0.32 with 10 000 attempts each, and 0.38 with endless ones",
+     "reach 0.38 at most, less between near walls",
      .unit = "1", INSIDE(0.0, 1.0), .kinds = KIND(JOB_PACKING_RANDOM),
      GIVEN(struct job_spheres, fraction), AT(struct job_spheres, fraction)},
-    {"region", SCHEMA_GROUP, "where spheres may be, wholly", .required = true,
-     .kinds = KIND(JOB_PACKING_RANDOM), REGION_AT(struct job_spheres, region, region.given)},
+    {"region", SCHEMA_GROUP,
+     "where spheres may be, wholly; where the domain repeats and the region spans the period, "
+     "across the boundary too",
+     .required = true, .kinds = KIND(JOB_PACKING_RANDOM),
+     REGION_AT(struct job_spheres, region, region.given)},
     {"gap", SCHEMA_NUMBER,
      "least distance between the surfaces of a sphere and of others, those of groups before "
      "it included",
      .unit = "m", .standard = "0", BETWEEN(0.0, FAR), .kinds = KIND(JOB_PACKING_RANDOM),
      AT(struct job_spheres, gap)},
     {"attempts", SCHEMA_COUNT,
-     "places to try for one sphere before giving up; the largest spheres are placed first",
+     "places to try for one sphere before giving up, soon only among those that may be free; "
+     "the largest spheres are placed first",
      .standard = "10000", BETWEEN(1.0, 1e9), .kinds = KIND(JOB_PACKING_RANDOM),
      AT(struct job_spheres, attempts)},
-    {"avoid_bodies", SCHEMA_FLAG, "keep clear of all bodies' surfaces as they are at time 0",
+    {"avoid_bodies", SCHEMA_FLAG,
+     "keep clear of the surfaces of bodies that are there at time 0, and out of closed ones "
+     "unless they hold most of the region",
      .standard = "true", .kinds = KIND(JOB_PACKING_RANDOM),
      AT(struct job_spheres, avoid_bodies)},
     {"spacing", SCHEMA_NUMBER, "distance between neighbouring centres; at least two radii",
@@ -374,8 +380,8 @@ static const struct schema_key geometry_keys[] = {
      .standard = "72", BETWEEN(3.0, 10000.0), .word = "exact", .word_value = 0.0,
      .kinds = ROUND, AT(struct job_body, segments)},
     {"file", SCHEMA_FILE,
-     "the file, relative to the job file: STL, ASCII or binary, or Gmsh's .msh, 2.2 or 4.1 in "
-     "ASCII",
+     "the file, relative to the job file: STL or Gmsh's .msh of format 2.2 or 4.1, each ASCII "
+     "or binary (little-endian)",
      .required = true, .kinds = FILES, AT(struct job_body, file)},
     {"sum", SCHEMA_COUNT,
      "checksum of the file (CRC-32), filled in by the program: a run is not resumed with "
@@ -658,7 +664,9 @@ static const struct schema_key section_keys[] = {
      .standard = "[]", .choices = splits, AT(struct job_section, by)},
     {"classes", SCHEMA_NUMBERS,
      "radii between the size classes, ascending; with `by: size` and none given, half way "
-     "between the radii that groups and insertions name (if these make at most 32 classes)",
+     "between the radii that groups and insertions name, at the radii of a `table`, and of "
+     "another distribution seven between min and max in steps of one ratio, so that it has eight "
+     "classes; at most 32 classes in all come so",
      .unit = "m", ABOVE_TO(0.0, FAR), GIVEN(struct job_section, classes),
      LIST_AT(struct job_section, classes, n_classes)},
     END};
@@ -715,8 +723,8 @@ static const struct schema_key insertion_keys[] = {
     {"sizes", SCHEMA_GROUP, "radii that differ, instead of `radius`",
      SIZES_AT(struct job_insertion, sizes, sizes.given)},
     {"region", SCHEMA_GROUP,
-     "where they appear: places are drawn evenly such that a sphere lies wholly within and "
-     "touches nothing",
+     "where they appear: places are drawn evenly such that a sphere lies wholly within, touches "
+     "nothing and is in no closed body, unless that holds most of the region",
      .required = true, REGION_AT(struct job_insertion, region, region.given)},
     {"velocity", SCHEMA_NUMBER, "velocity that they come with", .unit = "m/s", .standard = ZERO,
      BETWEEN(-FAR, FAR), AT(struct job_insertion, velocity)},

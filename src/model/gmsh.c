@@ -4,12 +4,18 @@
  * groups a surface belongs to (in 2.2 each element does).  Nodes have numbers of any size; they
  * are found by bisection.  Counts are believed only as far as the file is long.
  *
+ * In a binary file entities, nodes and elements are the same numbers as in text, as bytes, most
+ * of them of four, in 4.1 counts and tags of nodes and elements of eight; 2.2 counts in text
+ * and gathers elements of a type into blocks.  The least byte comes first, as in this machine.
+ *
  * Format: https://gmsh.info/doc/texinfo/gmsh.html#File-formats, chapters "MSH file format" and
  * "MSH file format version 2 (Legacy)".
  */
 #include "model/gmsh.h"
 
+#include <math.h>
 #include <stdint.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -25,9 +31,11 @@ struct node {
 
 struct reader {
     struct scan scan;
+    int64_t n_bytes; /* of the file */
     struct surface *surface;
     const char *group;       /* NULL: all */
     int version;             /* 22 or 41; 0: not said yet */
+    bool binary, bytes;      /* the file; what is read now */
     int64_t physical;        /* of the group; 0: not found */
     char others[NAME_SHOWN]; /* the groups that there are */
     int n_nodes, node_capacity;
@@ -41,23 +49,93 @@ struct reader {
 static const char COUNT[] = "a count that fits the file";
 static const char TAG[] = "a whole number above 0";
 
+/* Bytes that a number takes in a binary file: most, and in 4.1 counts and tags of nodes and
+ * elements. */
+enum { SHORT = 4, LONG = 8 };
+
+static int tag_size(const struct reader *reader)
+{
+    return reader->version == 41 ? LONG : SHORT;
+}
+
+static bool complain_at_byte(struct reader *reader, const char *at, const char *what,
+                             const char *expected)
+{
+    struct scan *scan = &reader->scan;
+    const char *start = scan->end - reader->n_bytes;
+    if (scan->why == NULL)
+        scan->why = array_format("%s: byte %lld: %s; %s is expected", scan->path,
+                                 (long long)(at - start) + 1, what, expected);
+    return false;
+}
+
+/* Goes over n pieces of these many bytes. */
+static bool skip_bytes(struct reader *reader, int64_t n, int64_t size)
+{
+    struct scan *scan = &reader->scan;
+    if (n > (scan->end - scan->at) / size)
+        return complain_at_byte(reader, scan->end, "the file ends here", "the rest of it");
+    scan->at += n * size;
+    return true;
+}
+
+static bool take(struct reader *reader, void *into, int size)
+{
+    const char *at = reader->scan.at;
+    if (!skip_bytes(reader, 1, size))
+        return false;
+    memcpy(into, at, (size_t)size);
+    return true;
+}
+
+static bool read_whole(struct reader *reader, int size, int64_t least, int64_t most,
+                       int64_t *value, const char *expected)
+{
+    const char *at = reader->scan.at;
+    int32_t narrow = 0;
+    if (!reader->bytes)
+        return scan_whole(&reader->scan, least, most, value, expected);
+    if (!(size == SHORT ? take(reader, &narrow, size) : take(reader, value, size)))
+        return false;
+    if (size == SHORT)
+        *value = narrow;
+    if (*value >= least && *value <= most)
+        return true;
+    char what[64];
+    snprintf(what, sizeof what, "%lld is not what belongs here", (long long)*value);
+    return complain_at_byte(reader, at, what, expected);
+}
+
 static bool read_count(struct reader *reader, int64_t *count)
 {
     /* Whatever is counted takes two bytes at least. */
     const int64_t most = (reader->scan.end - reader->scan.at) / 2;
-    return scan_whole(&reader->scan, 0, most, count, COUNT);
+    return read_whole(reader, tag_size(reader), 0, most, count, COUNT);
 }
 
-static bool read_any(struct reader *reader, int64_t *value)
+static bool read_any(struct reader *reader, int size, int64_t *value)
 {
-    return scan_whole(&reader->scan, INT64_MIN, INT64_MAX, value, "a whole number");
+    return read_whole(reader, size, -INT64_MAX, INT64_MAX, value, "a whole number");
+}
+
+static bool read_number(struct reader *reader, double *value)
+{
+    static const char EXPECTED[] = "a finite number";
+    const char *at = reader->scan.at;
+    if (!reader->bytes)
+        return scan_number(&reader->scan, value, EXPECTED);
+    if (!take(reader, value, sizeof *value))
+        return false;
+    return isfinite(*value) ||
+           complain_at_byte(reader, at, "infinity, or no number, does not belong here",
+                            EXPECTED);
 }
 
 static bool read_numbers(struct reader *reader, int64_t n, double *values, int keep)
 {
     double value;
     for (int64_t k = 0; k < n; k++) {
-        if (!scan_number(&reader->scan, &value, "a finite number"))
+        if (!read_number(reader, &value))
             return false;
         if (k < keep)
             values[k] = value;
@@ -65,8 +143,37 @@ static bool read_numbers(struct reader *reader, int64_t n, double *values, int k
     return true;
 }
 
+/* From here on there are bytes, in a binary file; the line's end belongs to the text. */
+static void begin_bytes(struct reader *reader)
+{
+    struct scan *scan = &reader->scan;
+    if (!reader->binary)
+        return;
+    scan_skip_line(scan);
+    scan->at += scan->at < scan->end;
+    reader->bytes = true;
+}
+
 /* ---- Head
  * ------------------------------------------------------------------------------------- */
+
+/* A binary file says how long numbers are, and shows a one. */
+static bool read_byte_order(struct reader *reader)
+{
+    struct scan *scan = &reader->scan;
+    int64_t one;
+    if (!scan_word(scan) || !scan_is(scan, "8"))
+        return scan_refuse(scan, "8, the bytes of a number,");
+    begin_bytes(reader);
+    const char *at = scan->at;
+    if (!read_any(reader, SHORT, &one))
+        return false;
+    reader->bytes = false;
+    if (one == 0x01000000)
+        return complain_at_byte(reader, at, "this is a big-endian file",
+                                "a little-endian one, or an ASCII one (gmsh -bin 0)");
+    return one == 1 || complain_at_byte(reader, at, "this is no byte order", "a one");
+}
 
 static bool read_format(struct reader *reader)
 {
@@ -79,11 +186,11 @@ static bool read_format(struct reader *reader)
         reader->version = 41;
     else
         return scan_refuse(scan, "version 2.2 or 4.1 (gmsh -format msh41)");
-    if (!scan_word(scan))
-        return scan_refuse(scan, "0 for an ASCII file");
-    if (!scan_is(scan, "0"))
-        return scan_complain(scan, "this is a binary .msh file; an ASCII one (gmsh -bin 0, "
-                                   "Mesh.Binary = 0) is expected");
+    if (!scan_word(scan) || !(scan_is(scan, "0") || scan_is(scan, "1")))
+        return scan_refuse(scan, "0 for an ASCII file or 1 for a binary one");
+    reader->binary = scan_is(scan, "1");
+    if (reader->binary)
+        return read_byte_order(reader);
     scan_skip_line(scan);
     return true;
 }
@@ -104,7 +211,7 @@ static bool read_names(struct reader *reader)
     if (!read_count(reader, &n))
         return false;
     for (int64_t k = 0; k < n; k++) {
-        if (!read_any(reader, &dimension) || !read_any(reader, &tag))
+        if (!read_any(reader, SHORT, &dimension) || !read_any(reader, SHORT, &tag))
             return false;
         if (!scan_word_of_line(scan) || scan->word[0] != '"')
             return scan_refuse(scan, "the group's name in quotes");
@@ -127,19 +234,42 @@ static bool read_names(struct reader *reader)
 /* ---- Entities, 4.1
  * ---------------------------------------------------------------------------- */
 
+/* Leaves out the last list of an entity: what is left of its line. */
+static bool skip_list(struct reader *reader)
+{
+    int64_t n;
+    if (reader->bytes)
+        return read_count(reader, &n) && skip_bytes(reader, n, SHORT);
+    scan_skip_line(&reader->scan);
+    return true;
+}
+
+/* Leaves out a point or a curve: tag, place or box, physical groups, of a curve its ends. */
+static bool skip_entity(struct reader *reader, int dimension)
+{
+    if (reader->bytes)
+        return skip_bytes(reader, 1, SHORT + (dimension == 0 ? 3 : 6) * LONG) &&
+               skip_list(reader) && (dimension == 0 || skip_list(reader));
+    if (!scan_word(&reader->scan))
+        return scan_refuse(&reader->scan, "an entity");
+    return skip_list(reader);
+}
+
 /* A surface's tag, box, physical groups and borders; it is chosen where it is in the group. */
 static bool read_surface_entity(struct reader *reader)
 {
     int64_t tag, n, value;
     bool chosen = false;
-    if (!read_any(reader, &tag) || !read_numbers(reader, 6, NULL, 0) || !read_count(reader, &n))
+    if (!read_any(reader, SHORT, &tag) || !read_numbers(reader, 6, NULL, 0) ||
+        !read_count(reader, &n))
         return false;
     for (int64_t k = 0; k < n; k++) {
-        if (!read_any(reader, &value))
+        if (!read_any(reader, SHORT, &value))
             return false;
-        chosen = chosen || value == reader->physical || value == -reader->physical;
+        chosen = chosen || value == reader->physical || -value == reader->physical;
     }
-    scan_skip_line(&reader->scan);
+    if (!skip_list(reader))
+        return false;
     if (chosen && reader->physical != 0) {
         ARRAY_GROW(reader->chosen, reader->n_chosen + 1, reader->chosen_capacity);
         reader->chosen[reader->n_chosen++] = tag;
@@ -150,16 +280,16 @@ static bool read_surface_entity(struct reader *reader)
 static bool read_entities(struct reader *reader)
 {
     int64_t n[4];
+    begin_bytes(reader);
     for (int d = 0; d < 4; d++)
         if (!read_count(reader, &n[d]))
             return false;
-    scan_skip_line(&reader->scan);
+    if (!reader->bytes)
+        scan_skip_line(&reader->scan);
     for (int d = 0; d < SURFACE; d++)
-        for (int64_t k = 0; k < n[d]; k++) { /* a line each */
-            if (!scan_word(&reader->scan))
-                return scan_refuse(&reader->scan, "an entity");
-            scan_skip_line(&reader->scan);
-        }
+        for (int64_t k = 0; k < n[d]; k++) /* in text a line each */
+            if (!skip_entity(reader, d))
+                return false;
     for (int64_t k = 0; k < n[SURFACE]; k++)
         if (!read_surface_entity(reader))
             return false;
@@ -197,8 +327,9 @@ static bool read_nodes_22(struct reader *reader)
     int64_t n, tag;
     if (!read_count(reader, &n))
         return false;
+    begin_bytes(reader);
     for (int64_t k = 0; k < n; k++) {
-        if (!scan_whole(&reader->scan, 1, INT64_MAX, &tag, TAG))
+        if (!read_whole(reader, SHORT, 1, INT64_MAX, &tag, TAG))
             return false;
         add_node(reader, tag);
         if (!read_place(reader, &reader->nodes[reader->n_nodes - 1], 3))
@@ -210,15 +341,14 @@ static bool read_nodes_22(struct reader *reader)
 /* A block: the numbers of its nodes, then their places. */
 static bool read_node_block(struct reader *reader)
 {
-    struct scan *scan = &reader->scan;
     int64_t dimension, entity, parametric, n, tag;
-    if (!scan_whole(scan, 0, 3, &dimension, "a dimension, 0 to 3,") ||
-        !read_any(reader, &entity) || !scan_whole(scan, 0, 1, &parametric, "0 or 1") ||
-        !read_count(reader, &n))
+    if (!read_whole(reader, SHORT, 0, 3, &dimension, "a dimension, 0 to 3,") ||
+        !read_any(reader, SHORT, &entity) ||
+        !read_whole(reader, SHORT, 0, 1, &parametric, "0 or 1") || !read_count(reader, &n))
         return false;
     const int first = reader->n_nodes;
     for (int64_t k = 0; k < n; k++) {
-        if (!scan_whole(scan, 1, INT64_MAX, &tag, TAG))
+        if (!read_whole(reader, LONG, 1, INT64_MAX, &tag, TAG))
             return false;
         add_node(reader, tag);
     }
@@ -231,10 +361,11 @@ static bool read_node_block(struct reader *reader)
 static bool read_nodes_41(struct reader *reader)
 {
     int64_t n_blocks, value;
+    begin_bytes(reader);
     if (!read_count(reader, &n_blocks))
         return false;
     for (int k = 0; k < 3; k++) /* how many nodes, least and largest number */
-        if (!read_any(reader, &value))
+        if (!read_any(reader, LONG, &value))
             return false;
     for (int64_t b = 0; b < n_blocks; b++)
         if (!read_node_block(reader))
@@ -269,13 +400,37 @@ static int corners_of(int64_t type)
 
 static bool read_type(struct reader *reader, int64_t *type)
 {
-    if (!scan_whole(&reader->scan, 1, 1000, type, "the type of an element"))
+    const char *at = reader->scan.at;
+    if (!read_whole(reader, SHORT, 1, 1000, type, "the type of an element"))
         return false;
-    return corners_of(*type) >= 0 ||
-           scan_complain(&reader->scan,
-                         "elements of type %lld, which are curved; triangles and quads of "
-                         "first order (gmsh -order 1) are expected",
-                         (long long)*type);
+    if (corners_of(*type) >= 0)
+        return true;
+    if (!reader->bytes)
+        return scan_complain(&reader->scan,
+                             "elements of type %lld, which are curved; triangles and quads of "
+                             "first order (gmsh -order 1) are expected",
+                             (long long)*type);
+    char what[64];
+    snprintf(what, sizeof what, "elements of type %lld, which are curved", (long long)*type);
+    return complain_at_byte(reader, at, what,
+                            "a mesh of triangles and quads of first order (gmsh -order 1)");
+}
+
+/* Leaves out what is left of an element: in a binary file its nodes, which each type has its
+ * number of. */
+static bool skip_element(struct reader *reader, int64_t type)
+{
+    static const char NODES[] = {0, 2,  3,  4,  4, 8,  6,  5,  3,  6,  9, 10, 27, 18, 14, 1,
+                                 8, 20, 15, 13, 9, 10, 12, 15, 15, 21, 4, 5,  6,  20, 35, 56};
+    if (!reader->bytes) {
+        scan_skip_line(&reader->scan);
+        return true;
+    }
+    if (type < (int64_t)sizeof NODES)
+        return skip_bytes(reader, NODES[type], tag_size(reader));
+    char what[64];
+    snprintf(what, sizeof what, "elements of type %lld", (long long)type);
+    return complain_at_byte(reader, reader->scan.at, what, "a mesh of lower order");
 }
 
 /* The corners of an element that is in the group. */
@@ -287,7 +442,7 @@ static bool read_corners(struct reader *reader, int n)
                              SURFACE_FACETS_MOST);
     for (int k = 0; k < n; k++) {
         struct node wanted = {0};
-        if (!scan_whole(&reader->scan, 1, INT64_MAX, &wanted.tag, TAG))
+        if (!read_whole(reader, tag_size(reader), 1, INT64_MAX, &wanted.tag, TAG))
             return false;
         const struct node *node = reader->n_nodes > 0
                                       ? bsearch(&wanted, reader->nodes, (size_t)reader->n_nodes,
@@ -304,16 +459,12 @@ static bool read_corners(struct reader *reader, int n)
     return true;
 }
 
-/* number type tags... corners */
-static bool read_element_22(struct reader *reader)
+/* The tags and the corners of an element. */
+static bool read_element_22(struct reader *reader, int64_t type, int64_t n_tags)
 {
-    struct scan *scan = &reader->scan;
-    int64_t number, type, n_tags, tag, physical = 0;
-    if (!read_any(reader, &number) || !read_type(reader, &type) ||
-        !scan_whole(scan, 0, 100000, &n_tags, "the number of the element's tags"))
-        return false;
+    int64_t tag, physical = 0;
     for (int64_t k = 0; k < n_tags; k++) {
-        if (!read_any(reader, &tag))
+        if (!read_any(reader, SHORT, &tag))
             return false;
         physical = k == 0 ? tag : physical;
     }
@@ -321,11 +472,29 @@ static bool read_element_22(struct reader *reader)
         physical = -physical;
     const int n = corners_of(type);
     reader->n_surface_elements += n > 0;
-    if (n == 0 || (reader->group != NULL && physical != reader->physical)) {
-        scan_skip_line(scan);
-        return true;
-    }
+    if (n == 0 || (reader->group != NULL && physical != reader->physical))
+        return skip_element(reader, type);
     return read_corners(reader, n);
+}
+
+/* number type how-many-tags, of each element in text; in bytes of a block: type, how many
+ * elements, how many tags, and each with its number.  Gives how many were read. */
+static bool read_elements_22(struct reader *reader, int64_t left, int64_t *n_read)
+{
+    int64_t number, type, n_tags, n = 1;
+    if (!reader->bytes && !read_any(reader, SHORT, &number))
+        return false;
+    if (!read_type(reader, &type) ||
+        (reader->bytes &&
+         !read_whole(reader, SHORT, 1, left, &n, "the number of elements of a block")) ||
+        !read_whole(reader, SHORT, 0, 100000, &n_tags, "the number of the element's tags"))
+        return false;
+    for (int64_t k = 0; k < n; k++)
+        if ((reader->bytes && !read_any(reader, SHORT, &number)) ||
+            !read_element_22(reader, type, n_tags))
+            return false;
+    *n_read = n;
+    return true;
 }
 
 static bool is_chosen(const struct reader *reader, int64_t entity)
@@ -339,36 +508,47 @@ static bool is_chosen(const struct reader *reader, int64_t entity)
 /* number corners..., a line each */
 static bool read_element_block(struct reader *reader)
 {
-    struct scan *scan = &reader->scan;
     int64_t dimension, entity, type, n_elements, number;
-    if (!scan_whole(scan, 0, 3, &dimension, "a dimension, 0 to 3,") ||
-        !read_any(reader, &entity) || !read_type(reader, &type) ||
+    if (!read_whole(reader, SHORT, 0, 3, &dimension, "a dimension, 0 to 3,") ||
+        !read_any(reader, SHORT, &entity) || !read_type(reader, &type) ||
         !read_count(reader, &n_elements))
         return false;
     const int n = corners_of(type);
     const bool taken = n > 0 && is_chosen(reader, entity);
     reader->n_surface_elements += n > 0 ? n_elements : 0;
     for (int64_t k = 0; k < n_elements; k++) {
-        if (!read_any(reader, &number))
-            return false;
-        if (!taken)
-            scan_skip_line(scan);
-        else if (!read_corners(reader, n))
+        if (!read_any(reader, LONG, &number) ||
+            !(taken ? read_corners(reader, n) : skip_element(reader, type)))
             return false;
     }
     return true;
 }
 
-static bool read_elements(struct reader *reader)
+static bool read_blocks(struct reader *reader)
 {
     int64_t n, value;
+    begin_bytes(reader);
     if (!read_count(reader, &n))
         return false;
-    for (int k = 0; k < 3 && reader->version == 41; k++)
-        if (!read_any(reader, &value))
+    for (int k = 0; k < 3; k++)
+        if (!read_any(reader, LONG, &value))
             return false;
     for (int64_t k = 0; k < n; k++)
-        if (!(reader->version == 22 ? read_element_22(reader) : read_element_block(reader)))
+        if (!read_element_block(reader))
+            return false;
+    return true;
+}
+
+static bool read_elements(struct reader *reader)
+{
+    int64_t n, n_read;
+    if (reader->version == 41)
+        return read_blocks(reader);
+    if (!read_count(reader, &n))
+        return false;
+    begin_bytes(reader);
+    for (; n > 0; n -= n_read)
+        if (!read_elements_22(reader, n, &n_read))
             return false;
     return true;
 }
@@ -410,7 +590,9 @@ static bool read_section(struct reader *reader)
         read = read_elements;
     if (read == NULL)
         return skip_section(scan, end);
-    return read(reader) && skip_section(scan, end);
+    const bool fine = read(reader);
+    reader->bytes = false;
+    return fine && skip_section(scan, end);
 }
 
 static bool read_file(struct reader *reader)
@@ -439,7 +621,8 @@ static bool read_file(struct reader *reader)
 bool gmsh_read(struct surface *surface, const char *path, const char *bytes, size_t n,
                const char *group, char **why)
 {
-    struct reader reader = {.surface = surface, .group = group, .nodes_ascend = true};
+    struct reader reader = {
+        .n_bytes = (int64_t)n, .surface = surface, .group = group, .nodes_ascend = true};
     *surface = (struct surface){0};
     scan_init(&reader.scan, path, bytes, n);
     if (group != NULL && strspn(group, "0123456789") == strlen(group)) /* one without a name */

@@ -244,3 +244,11 @@ struct packing_sphere packing_get(const struct packing *packing, int64_t k)
 {
     return packing->rows != NULL ? packing->rows[k] : lattice_sphere(packing, k);
 }
+
+double packing_greatest(const struct packing *packing)
+{
+    double most = packing->sizes.max;
+    for (int64_t k = 0; packing->rows != NULL && k < packing->n; k++)
+        most = packing->rows[k].radius > most ? packing->rows[k].radius : most;
+    return most;
+}

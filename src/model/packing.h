@@ -37,5 +37,7 @@ bool packing_open(struct packing *packing, const struct job *job, int group, cha
 void packing_close(struct packing *packing);
 /* The k-th sphere, k from 0 to n - 1. */
 struct packing_sphere packing_get(const struct packing *packing, int64_t k);
+/* No sphere is or will be greater [m]. */
+double packing_greatest(const struct packing *packing);
 
 #endif

@@ -1,14 +1,19 @@
 /*
  * See packings.h.  The radii of a random group are drawn first, so that their distribution is
  * the one asked for whatever finds room; then the spheres are placed, the largest first, each
- * at the first of its attempts that is free.  An attempt is three numbers of the counter
+ * at the first of its attempts that is free.  An attempt is a few numbers of the counter
  * (sphere, attempt), so nothing depends on what other groups or ranks do.
  *
- * Attempts are wasted as space fills up: 60 000 equal spheres take half a second for 25 % by
- * volume, 72 000 two seconds for 30 %, and no number of attempts leads beyond 38 %.
+ * A sphere's first attempts go to all of the region.  Where they fail, space is cut into cells
+ * and the rest go to those that are not known to be taken for a sphere of this size
+ * (model/vacancy), cut finer whenever about as many attempts have failed as there are cells: a
+ * free place is as likely as any other to be found, and soon.  What is known holds for spheres
+ * as large or larger, so cells serve a range of sizes and are made anew for the next.  When no
+ * cell is left there is no room, which is thereby proved.
  */
 #include "model/packings.h"
 
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -20,6 +25,7 @@
 #include "model/crowd.h"
 #include "model/periodic.h"
 #include "model/region.h"
+#include "model/vacancy.h"
 
 enum { SPHERES_MOST = 50000000 };
 
@@ -32,6 +38,18 @@ struct builder {
     struct periodic periodic;
     double radius, gap;               /* the greatest of all [m] */
     struct region_surface **surfaces; /* of bodies; NULL where there is nothing to avoid */
+};
+
+/* A group while it is placed. */
+struct filling {
+    struct builder *builder;
+    struct packing *packing;
+    struct region region;
+    bool *solid;            /* bodies whose inside is not for it */
+    double radius;          /* that `vacancy` holds for, and for all greater ones [m] */
+    struct vacancy vacancy; /* without cells: not begun, or used up */
+    bool scarce;            /* it is in use */
+    int64_t n_failed;       /* attempts since its cells were cut */
 };
 
 static double volume_of(double radius)
@@ -111,116 +129,247 @@ static struct place_order *order_of(const struct packing *packing)
     return order;
 }
 
-static bool is_clear_of_bodies(const struct builder *builder, const struct job_spheres *group,
-                               struct vec3 x, double margin)
-{
-    for (int b = 0; group->avoid_bodies && b < builder->bodies->n; b++)
-        if (builder->surfaces[b] != NULL &&
-            region_surface_is_near(builder->surfaces[b], x, margin))
-            return false;
-    return true;
-}
-
-/* Could a sphere here come near one that is in the domain? */
-static bool is_near_domain(const struct builder *builder, struct vec3 x, double reach)
-{
-    const double at[3] = {x.x, x.y, x.z};
-    const struct periodic *p = &builder->periodic;
-    for (int c = 0; c < 3; c++)
-        if (p->along[c] && !(at[c] >= p->low[c] - reach && at[c] <= p->high[c] + reach))
-            return false;
-    return true;
-}
-
 /* A sphere stands in the way where it is, and where it appears across periodic boundaries. */
 static void enter(struct builder *builder, struct vec3 x, double radius, double gap)
 {
-    double shifts[PERIODIC_IMAGES][3];
-    const double reach = radius + builder->radius + gap;
-    const int n = periodic_shifts(&builder->periodic, shifts);
-    for (int s = 0; s < n; s++) {
-        const struct vec3 shift = {shifts[s][0], shifts[s][1], shifts[s][2]};
-        const struct vec3 image = vec3_add(x, shift);
-        if (s == 0 || is_near_domain(builder, image, reach))
-            crowd_add(&builder->crowd, image, radius);
-    }
+    crowd_add_repeated(&builder->crowd, &builder->periodic, x, radius,
+                       radius + builder->radius + gap);
 }
 
-/* Finds a place for a sphere and enters it. */
-static bool place_sphere(struct builder *builder, const struct region *region,
-                         const struct job_spheres *group, struct packing_sphere *sphere,
-                         int64_t k)
+/* Is no place left in a box for a centre, because of the surfaces or the insides of bodies? */
+static bool bodies_take(const struct filling *filling, struct vec3 x, double far, double reach)
 {
-    const uint64_t seed = (uint64_t)builder->job->seed;
-    const uint64_t stream =
-        random_stream(RANDOM_PACKING_PLACES, (int)(group - builder->job->spheres));
-    for (int64_t attempt = 0; attempt < group->attempts; attempt++) {
-        const uint64_t counter = (uint64_t)k * (uint64_t)group->attempts + (uint64_t)attempt;
-        const struct vec3 x = region_point(region, sphere->radius, seed, stream, counter);
-        /* The cheapest question first. */
-        if (crowd_has_room(&builder->crowd, x, sphere->radius, group->gap) &&
-            region_contains(region, x, sphere->radius) &&
-            is_clear_of_bodies(builder, group, x, sphere->radius + group->gap)) {
-            sphere->position = x;
-            enter(builder, x, sphere->radius, group->gap);
+    const struct builder *builder = filling->builder;
+    for (int b = 0; b < builder->bodies->n; b++) {
+        const struct region_surface *surface = builder->surfaces[b];
+        if (!filling->packing->group->avoid_bodies || surface == NULL)
+            continue;
+        if (reach > far && region_surface_is_near(surface, x, reach - far))
             return true;
-        }
+        if (filling->solid[b] && region_surface_holds(surface, x) &&
+            (far == 0.0 || !region_surface_is_near(surface, x, far)))
+            return true;
     }
     return false;
 }
 
-/* Says how far the addition came. */
-static void say_no_room(const struct builder *builder, const struct packing *packing,
-                        const struct region *region, double asked, double reached,
-                        int64_t n_placed, struct mistakes *mistakes)
+/* Is all of a box taken for centres of spheres of the radius that the cells hold for?  Of the
+ * box only its centre and the distance to its corners are looked at where shapes are in the
+ * way; a hair less than all is asked, for rounding. */
+static bool is_taken(const void *context, struct vec3 centre, struct vec3 half)
 {
-    const struct job_spheres *group = packing->group;
-    mistakes_add(mistakes, builder->job->path, 0, 0,
-                 "spheres '%s': random addition was asked for %.3g %% of the region's volume "
-                 "(%lld spheres) and reached %.3g %% (%lld) after %lld attempts for the next; "
-                 "less, a lattice, or letting them settle is expected",
-                 group->name, 100.0 * asked / region->volume, (long long)packing->n,
-                 100.0 * reached / region->volume, (long long)n_placed,
-                 (long long)group->attempts);
+    static const double HAIR = 1e-9;
+    const struct filling *filling = context;
+    const double gap = filling->packing->group->gap;
+    const double far = vec3_norm(half) * (1.0 + HAIR), radius = filling->radius * (1.0 - HAIR);
+    const struct vec3 place = periodic_settled(&filling->builder->periodic, centre);
+    return crowd_covering(&filling->builder->crowd, place, half, radius + gap) >= 0 ||
+           (far < radius && !region_contains(&filling->region, centre, radius - far)) ||
+           bodies_take(filling, place, far, radius + gap);
 }
 
-static bool place_all(struct builder *builder, struct packing *packing,
-                      const struct region *region, double asked, struct mistakes *mistakes)
+/* Is there room for a sphere?  Then it is entered; else *blocker is who is in the way, of the
+ * crowd, or -1.  The cheapest question comes first. */
+static bool try_place(struct filling *filling, struct packing_sphere *sphere, struct vec3 x,
+                      int *blocker)
 {
+    static const struct vec3 POINT = {0.0, 0.0, 0.0};
+    struct builder *builder = filling->builder;
+    const double gap = filling->packing->group->gap, radius = sphere->radius;
+    const struct vec3 place = periodic_settled(&builder->periodic, x);
+    *blocker = crowd_covering(&builder->crowd, place, POINT, radius + gap);
+    if (*blocker >= 0 || !region_contains(&filling->region, x, radius) ||
+        bodies_take(filling, place, 0.0, radius + gap))
+        return false;
+    sphere->position = place;
+    enter(builder, place, radius, gap);
+    return true;
+}
+
+/* ------------------------------------------------------------------------------- scarcity */
+
+/* Attempts at all of the region; so many in cells before these are cut in any case. */
+enum { ATTEMPTS_ANYWHERE = 200, ATTEMPTS_UNCUT = 1000 };
+
+/* Spheres down to this share of a radius use the same cells. */
+static const double RANGE = 0.9;
+
+/* Cells for this sphere and those after it in the order that are not much smaller. */
+static void begin_scarcity(struct filling *filling, const struct place_order *order, int64_t o)
+{
+    const struct region *region = &filling->region;
+    const int64_t n = filling->packing->n;
+    const double least = RANGE * order[o].radius;
+    int64_t last = o;
+    for (int64_t low = o, high = n; low < high;) {
+        const int64_t middle = low + (high - low) / 2;
+        if (order[middle].radius >= least) {
+            last = middle;
+            low = middle + 1;
+        } else {
+            high = middle;
+        }
+    }
+    vacancy_close(&filling->vacancy);
+    filling->scarce = true;
+    filling->radius = order[last].radius;
+    filling->n_failed = 0;
+    vacancy_open(&filling->vacancy, region->low, region->high, filling->radius);
+}
+
+/* Drops a cell in which an attempt failed if it is known to be taken, by who was in the way
+ * there if somebody was; false where no cell is left. */
+static bool learn(struct filling *filling, int64_t cell, int blocker, int64_t attempt)
+{
+    const struct builder *builder = filling->builder;
+    struct vacancy *vacancy = &filling->vacancy;
+    struct vec3 half;
+    const struct vec3 centre = vacancy_box(vacancy, cell, &half);
+    const double reach = filling->radius + filling->packing->group->gap;
+    const bool taken =
+        blocker < 0 ? is_taken(filling, centre, half)
+                    : crowd_covers(&builder->crowd, blocker,
+                                   periodic_settled(&builder->periodic, centre), half, reach);
+    if (taken)
+        vacancy_drop(vacancy, cell);
+    else
+        filling->n_failed++;
+    if (filling->n_failed > vacancy->n || (attempt + 1) % ATTEMPTS_UNCUT == 0) {
+        vacancy_cut(vacancy, is_taken, filling);
+        filling->n_failed = 0;
+    }
+    return vacancy->n > 0;
+}
+
+static bool place_among_cells(struct filling *filling, struct packing_sphere *sphere, int64_t k)
+{
+    const struct builder *builder = filling->builder;
+    const uint64_t seed = (uint64_t)builder->job->seed;
+    const uint64_t stream = random_stream(
+        RANDOM_PACKING_VACANCIES, (int)(filling->packing->group - builder->job->spheres));
+    const int64_t attempts = filling->packing->group->attempts;
+    struct vacancy *vacancy = &filling->vacancy;
+    for (int64_t attempt = 0; attempt < attempts && vacancy->n > 0; attempt++) {
+        const uint64_t counter = 4 * ((uint64_t)k * (uint64_t)attempts + (uint64_t)attempt);
+        double part[4];
+        int blocker;
+        for (int c = 0; c < 4; c++)
+            part[c] = random_unit(seed, stream, counter + (uint64_t)c);
+        const int64_t drawn = (int64_t)(part[3] * (double)vacancy->n);
+        const int64_t cell = drawn < vacancy->n ? drawn : vacancy->n - 1;
+        if (try_place(filling, sphere, vacancy_point(vacancy, cell, part), &blocker))
+            return true;
+        if (!learn(filling, cell, blocker, attempt))
+            return false;
+    }
+    return false;
+}
+
+static bool place_anywhere(struct filling *filling, struct packing_sphere *sphere, int64_t k)
+{
+    const struct job_spheres *group = filling->packing->group;
+    const struct job *job = filling->builder->job;
+    const uint64_t stream = random_stream(RANDOM_PACKING_PLACES, (int)(group - job->spheres));
+    for (int64_t attempt = 0; attempt < group->attempts && attempt < ATTEMPTS_ANYWHERE;
+         attempt++) {
+        const uint64_t counter = (uint64_t)k * (uint64_t)group->attempts + (uint64_t)attempt;
+        int blocker;
+        if (try_place(filling, sphere,
+                      region_point(&filling->region, sphere->radius, (uint64_t)job->seed,
+                                   stream, counter),
+                      &blocker))
+            return true;
+    }
+    return false;
+}
+
+/* Finds a place for the sphere that comes next in the order and enters it. */
+static bool place_sphere(struct filling *filling, const struct place_order *order, int64_t o)
+{
+    const int64_t k = order[o].k;
+    struct packing_sphere *sphere = &filling->packing->rows[k];
+    if (filling->scarce && sphere->radius >= filling->radius)
+        return place_among_cells(filling, sphere, k);
+    if (place_anywhere(filling, sphere, k))
+        return true;
+    begin_scarcity(filling, order, o);
+    return place_among_cells(filling, sphere, k);
+}
+
+/* ------------------------------------------------------------------------------- filling */
+
+/* Says how far the addition came. */
+static void say_no_room(const struct filling *filling, double asked, double reached,
+                        int64_t n_placed, struct mistakes *mistakes)
+{
+    const struct packing *packing = filling->packing;
+    const struct job_spheres *group = packing->group;
+    char tried[64] = "no room is left for the next";
+    if (filling->vacancy.n > 0)
+        snprintf(tried, sizeof tried, "%lld attempts found none for the next",
+                 (long long)group->attempts);
+    mistakes_add(mistakes, filling->builder->job->path, group->place.line, group->place.column,
+                 "spheres '%s': random addition was asked for %.3g %% of the region's volume "
+                 "(%lld spheres) and reached %.3g %% (%lld): %s; less, a lattice, or letting "
+                 "them settle is expected",
+                 group->name, 100.0 * asked / filling->region.volume, (long long)packing->n,
+                 100.0 * reached / filling->region.volume, (long long)n_placed, tried);
+}
+
+static bool place_all(struct filling *filling, double asked, struct mistakes *mistakes)
+{
+    const struct packing *packing = filling->packing;
     struct place_order *order = order_of(packing);
     double reached = 0.0;
     int64_t done = 0;
-    while (done < packing->n && place_sphere(builder, region, packing->group,
-                                             &packing->rows[order[done].k], order[done].k)) {
-        reached += volume_of(order[done].radius);
-        done++;
-    }
+    while (done < packing->n && place_sphere(filling, order, done))
+        reached += volume_of(order[done++].radius);
     if (done < packing->n)
-        say_no_room(builder, packing, region, asked, reached, done, mistakes);
+        say_no_room(filling, asked, reached, done, mistakes);
     free(order);
     return done == packing->n;
+}
+
+/* Builds the region of a group and what is solid to it; false, the mistake listed, where there
+ * is none. */
+static bool filling_begin(struct filling *filling, struct builder *builder,
+                          struct packing *packing, struct mistakes *mistakes)
+{
+    const struct job_spheres *group = packing->group;
+    const struct bodies *bodies = builder->bodies;
+    char *why;
+    *filling = (struct filling){.builder = builder, .packing = packing};
+    if (!region_build(&filling->region, &group->region, bodies, &why)) {
+        mistakes_add(mistakes, builder->job->path, group->place.line, group->place.column,
+                     "spheres '%s': the region: %s", group->name, why);
+        free(why);
+        return false;
+    }
+    region_repeat(&filling->region, &builder->periodic);
+    filling->solid = array_allocate((size_t)bodies->n, sizeof *filling->solid);
+    for (int b = 0; group->avoid_bodies && b < bodies->n; b++)
+        filling->solid[b] = region_meets_solid(&filling->region, &bodies->list[b]);
+    return true;
 }
 
 static bool fill(struct builder *builder, struct packing *packing, struct mistakes *mistakes)
 {
     const struct job_spheres *group = packing->group;
-    struct region region;
-    char *why;
-    if (!region_build(&region, &group->region, builder->bodies, &why)) {
-        mistakes_add(mistakes, builder->job->path, 0, 0, "spheres '%s': the region: %s",
-                     group->name, why);
-        free(why);
+    struct filling filling;
+    if (!filling_begin(&filling, builder, packing, mistakes))
         return false;
-    }
-    const double volume = draw_radii(packing, volume_asked(builder->job, group, &region));
+    const double volume =
+        draw_radii(packing, volume_asked(builder->job, group, &filling.region));
     bool fine = volume > 0.0;
     if (!fine)
-        mistakes_add(mistakes, builder->job->path, 0, 0,
+        mistakes_add(mistakes, builder->job->path, group->place.line, group->place.column,
                      "spheres '%s' would be more than %d; fewer or larger ones are expected",
                      group->name, (int)SPHERES_MOST);
     else
-        fine = place_all(builder, packing, &region, volume, mistakes);
-    region_clear(&region);
+        fine = place_all(&filling, volume, mistakes);
+    vacancy_close(&filling.vacancy);
+    region_clear(&filling.region);
+    free(filling.solid);
     return fine;
 }
 
@@ -231,33 +380,27 @@ static bool is_random(const struct packing *packing)
     return packing->group->packing == JOB_PACKING_RANDOM;
 }
 
-/* The greatest radius of a group. */
-static double greatest_radius(const struct packing *packing)
-{
-    double most = packing->sizes.max;
-    for (int64_t k = 0; packing->rows != NULL && k < packing->n; k++)
-        most = packing->rows[k].radius > most ? packing->rows[k].radius : most;
-    return most;
-}
-
-/* Surfaces of the bodies that some group keeps clear of. */
+/* Surfaces of the bodies that some group keeps clear of: of those that are there. */
 static void builder_init(struct builder *builder, const struct packings *packings,
                          const struct job *job, const struct bodies *bodies,
                          const struct packing *before)
 {
     const size_t n = (size_t)bodies->n;
-    double radius = greatest_radius(before);
+    double radius = packing_greatest(before);
     bool avoid = false;
     *builder = (struct builder){
         .job = job, .bodies = bodies, .surfaces = array_allocate(n, sizeof(void *))};
     for (int g = 0; g < packings->n; g++) {
-        const double most = greatest_radius(&packings->groups[g]);
+        const double most = packing_greatest(&packings->groups[g]);
         radius = most > radius ? most : radius;
         builder->gap = job->spheres[g].gap > builder->gap ? job->spheres[g].gap : builder->gap;
         avoid = avoid || (is_random(&packings->groups[g]) && job->spheres[g].avoid_bodies);
     }
-    for (int b = 0; avoid && b < bodies->n; b++)
-        builder->surfaces[b] = region_surface_build(&bodies->list[b].mesh);
+    for (int b = 0; avoid && b < bodies->n; b++) {
+        const struct body *body = &bodies->list[b];
+        if (!body->comes_and_goes || body->active[0] <= 0.0)
+            builder->surfaces[b] = region_surface_build(&body->mesh, body->mesh.reference);
+    }
     builder->radius = radius;
     periodic_init(&builder->periodic, job);
     crowd_init(&builder->crowd, radius);
@@ -275,7 +418,8 @@ static void add_group(struct builder *builder, const struct packing *packing)
 {
     for (int64_t k = 0; k < packing->n; k++) {
         const struct packing_sphere sphere = packing_get(packing, k);
-        enter(builder, sphere.position, sphere.radius, builder->gap);
+        enter(builder, periodic_settled(&builder->periodic, sphere.position), sphere.radius,
+              builder->gap);
     }
 }
 

@@ -23,6 +23,7 @@
 #include "base/array.h"
 #include "base/random.h"
 #include "model/body.h"
+#include "model/periodic.h"
 
 enum { CELLS_ALONG_MOST = 128 };
 
@@ -202,24 +203,26 @@ static bool is_closed(const struct body *body, char **why)
     return false;
 }
 
-static void add_triangle(struct region_surface *s, const struct mesh *mesh, int a, int b, int c)
+static void add_triangle(struct region_surface *s, const struct vec3 *vertices, int a, int b,
+                         int c)
 {
     struct triangle *t = &s->triangles[s->n++];
-    t->corners[0] = t->low = t->high = mesh->reference[a];
-    t->corners[1] = mesh->reference[b];
-    t->corners[2] = mesh->reference[c];
+    t->corners[0] = t->low = t->high = vertices[a];
+    t->corners[1] = vertices[b];
+    t->corners[2] = vertices[c];
     for (int k = 1; k < 3; k++)
         box_add(&t->low, &t->high, t->corners[k]);
 }
 
-static void build_triangles(struct region_surface *s, const struct mesh *mesh)
+static void build_triangles(struct region_surface *s, const struct mesh *mesh,
+                            const struct vec3 *vertices)
 {
     s->triangles = array_allocate(2 * (size_t)mesh->n_faces, sizeof *s->triangles);
     for (int f = 0; f < mesh->n_faces; f++) {
         const int *v = mesh->faces[f].vertices;
-        add_triangle(s, mesh, v[0], v[1], v[2]);
+        add_triangle(s, vertices, v[0], v[1], v[2]);
         if (mesh->faces[f].n == 4)
-            add_triangle(s, mesh, v[0], v[2], v[3]);
+            add_triangle(s, vertices, v[0], v[2], v[3]);
     }
     s->origin = s->triangles[0].low;
     s->end = s->triangles[0].high;
@@ -239,11 +242,11 @@ static struct vec3 circle_reach(struct vec3 axis)
                          sqrt(greater(1.0 - axis.z * axis.z, 0.0))};
 }
 
-static void build_round(struct region_surface *s, const struct mesh *mesh)
+static void build_round(struct region_surface *s, const struct mesh *mesh,
+                        const struct vec3 *vertices)
 {
-    const struct vec3 top = mesh->reference[mesh->axis[1]];
-    s->foot = mesh->reference[mesh->axis[0]];
-    s->axis = vec3_sub(top, s->foot);
+    s->foot = vertices[mesh->axis[0]];
+    s->axis = vec3_sub(vertices[mesh->axis[1]], s->foot);
     s->axis = vec3_scale(1.0 / vec3_norm(s->axis), s->axis);
     const struct vec3 reach = circle_reach(s->axis);
     s->n_bands = mesh->n_bands;
@@ -262,13 +265,14 @@ static void build_round(struct region_surface *s, const struct mesh *mesh)
     }
 }
 
-struct region_surface *region_surface_build(const struct mesh *mesh)
+struct region_surface *region_surface_build(const struct mesh *mesh,
+                                            const struct vec3 *vertices)
 {
     struct region_surface *s = array_allocate(1, sizeof *s);
     if (mesh->n_bands > 0)
-        build_round(s, mesh);
+        build_round(s, mesh, vertices);
     else if (mesh->n_faces > 0)
-        build_triangles(s, mesh);
+        build_triangles(s, mesh, vertices);
     return s;
 }
 
@@ -312,7 +316,7 @@ static bool build_surface(struct region *region, const char *name, const struct 
     }
     if (!is_closed(body, why))
         return false;
-    region->surface = region_surface_build(&body->mesh);
+    region->surface = region_surface_build(&body->mesh, body->mesh.reference);
     region->low = region->surface->origin;
     region->high = region->surface->end;
     region->volume = enclosed_volume(region->surface, region->low);
@@ -379,6 +383,30 @@ void region_clear(struct region *region)
 {
     region_surface_destroy(region->surface);
     region->surface = NULL;
+}
+
+/* A cylinder along one of the axes has two ends that space may go round; a box six. */
+static bool has_ends_along(const struct region *region, int c)
+{
+    const double axis[3] = {region->axis.x, region->axis.y, region->axis.z};
+    return region->kind == JOB_REGION_BOX || region->kind == JOB_REGION_INSIDE ||
+           (region->kind == JOB_REGION_CYLINDER && (axis[c] == 1.0 || axis[c] == -1.0));
+}
+
+void region_repeat(struct region *region, const struct periodic *periodic)
+{
+    double *const low[3] = {&region->low.x, &region->low.y, &region->low.z};
+    double *const high[3] = {&region->high.x, &region->high.y, &region->high.z};
+    for (int c = 0; c < 3; c++) {
+        const double size = *high[c] - *low[c];
+        if (!periodic->along[c] || !has_ends_along(region, c) ||
+            size < periodic->period[c] * (1.0 - 1e-12))
+            continue;
+        region->endless[c] = true;
+        region->volume *= periodic->period[c] / size; /* all that is alike along there */
+        *low[c] = periodic->low[c];
+        *high[c] = periodic->high[c];
+    }
 }
 
 /* ------------------------------------------------------------------------------- distances */
@@ -489,7 +517,7 @@ static bool is_within_bands(const struct region_surface *s, struct vec3 x)
     return odd;
 }
 
-static bool is_within(const struct region_surface *s, struct vec3 x)
+bool region_surface_holds(const struct region_surface *s, struct vec3 x)
 {
     if (s->n_bands > 0)
         return is_within_bands(s, x);
@@ -511,8 +539,10 @@ static bool is_within(const struct region_surface *s, struct vec3 x)
 static bool is_in_box(const struct region *region, struct vec3 x, double margin)
 {
     const struct vec3 a = region->low, b = region->high;
-    return x.x - a.x >= margin && x.y - a.y >= margin && x.z - a.z >= margin &&
-           b.x - x.x >= margin && b.y - x.y >= margin && b.z - x.z >= margin;
+    const bool *endless = region->endless;
+    return (endless[0] || (x.x - a.x >= margin && b.x - x.x >= margin)) &&
+           (endless[1] || (x.y - a.y >= margin && b.y - x.y >= margin)) &&
+           (endless[2] || (x.z - a.z >= margin && b.z - x.z >= margin));
 }
 
 static bool is_in_cylinder(const struct region *region, struct vec3 x, double margin)
@@ -520,7 +550,8 @@ static bool is_in_cylinder(const struct region *region, struct vec3 x, double ma
     const struct vec3 r = vec3_sub(x, region->centre);
     const double along = vec3_dot(r, region->axis);
     const struct vec3 aside = vec3_axpy(r, -along, region->axis);
-    return along >= margin && region->length - along >= margin &&
+    const bool endless = region->endless[0] || region->endless[1] || region->endless[2];
+    return (endless || (along >= margin && region->length - along >= margin)) &&
            vec3_norm(aside) <= region->radius - margin;
 }
 
@@ -536,7 +567,7 @@ bool region_contains(const struct region *region, struct vec3 x, double margin)
     case JOB_REGION_INSIDE:
         return is_in_box(region, x, margin) &&
                !region_surface_is_near(region->surface, x, margin) &&
-               is_within(region->surface, x);
+               region_surface_holds(region->surface, x);
     }
     return false;
 }
@@ -609,9 +640,29 @@ struct vec3 region_point(const struct region *region, double margin, uint64_t se
                          uint64_t stream, uint64_t attempt)
 {
     const struct vec3 a = region->low, b = region->high;
+    const double x = region->endless[0] ? 0.0 : margin, y = region->endless[1] ? 0.0 : margin;
+    const double z = region->endless[2] ? 0.0 : margin;
     return (struct vec3){
-        between(a.x, b.x, margin, random_unit(seed, stream, 3 * attempt)),
-        between(a.y, b.y, margin, random_unit(seed, stream, 3 * attempt + 1)),
-        between(a.z, b.z, margin, random_unit(seed, stream, 3 * attempt + 2)),
+        between(a.x, b.x, x, random_unit(seed, stream, 3 * attempt)),
+        between(a.y, b.y, y, random_unit(seed, stream, 3 * attempt + 1)),
+        between(a.z, b.z, z, random_unit(seed, stream, 3 * attempt + 2)),
     };
+}
+
+bool region_meets_solid(const struct region *region, const struct body *body)
+{
+    enum { POINTS = 2000 };
+    int n = 0, n_inside = 0;
+    if (!mesh_survey(&body->mesh).closed)
+        return false;
+    struct region_surface *surface = region_surface_build(&body->mesh, body->mesh.reference);
+    for (uint64_t k = 0; k < POINTS; k++) {
+        const struct vec3 x = region_point(region, 0.0, 0, 0, k);
+        if (!region_contains(region, x, 0.0))
+            continue;
+        n++;
+        n_inside += region_surface_holds(surface, x);
+    }
+    region_surface_destroy(surface);
+    return 2 * n_inside <= n;
 }

@@ -19,6 +19,7 @@
 #include "run/inflow.h"
 #include "run/limits.h"
 #include "run/simulation.h"
+#include "run/start.h"
 #include "run/step.h"
 #include "run/survey.h"
 #include "store/crc32.h"
@@ -380,12 +381,15 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
         add_bodies(&bodies, &scene);
         inflow_check(job, &bodies, &scene.low, &scene.high, mistakes);
         choose_domain(job, &scene);
+        start_check(job, &bodies, &packings, &before.packing, mistakes);
         for (int k = 0; k < job->n_insertions; k++) {
             const double incoming = inflow_of(job, k).speed;
             speed = incoming > speed ? incoming : speed;
         }
         if (job->time.step == 0.0)
             choose_times(job, &packings, &before.packing, foresee_speed(job, &bodies, speed));
+        if (mistakes->n == 0)
+            inflow_check_room(job, &bodies, mistakes);
     }
     packings_close(&packings);
     chain_close(&before);
@@ -699,6 +703,7 @@ void check_print(const struct job *job, const struct comm *comm)
     survey_print(job, &bodies);
     warn_of_ends(job, &bodies, radius_most);
     warn_of_thin_removals(job, &bodies, radius_most);
+    inflow_warn(job, &bodies);
     add_bodies(&bodies, &scene);
     bodies_clear(&bodies);
     print_extent("scene    ", &scene);

@@ -16,6 +16,7 @@
 #include "base/timer.h"
 #include "job/job.h"
 #include "run/control.h"
+#include "run/inflow.h"
 #include "run/options.h"
 #include "run/simulation.h"
 #include "run/step.h"
@@ -202,6 +203,8 @@ static int prepare(struct drive *drive)
         return status;
     describe_run(drive);
     survey_warn(drive->job, &drive->sim.bodies, &drive->sim.spheres, drive->comm);
+    if (drive->comm->rank == 0)
+        inflow_warn(drive->job, &drive->sim.bodies);
     if (found)
         report_say("resumes at step %lld (%.6g s)", (long long)drive->sim.step,
                    (double)drive->sim.step * drive->sim.dt);

@@ -33,4 +33,12 @@ void inflow_add_limits(struct limits *limits, const struct job *job,
 void inflow_check(const struct job *job, const struct bodies *bodies, struct vec3 *low,
                   struct vec3 *high, struct mistakes *mistakes);
 
+/* Lists insertions that are to stop the run when full and whose region cannot hold what comes
+ * in while it stays there, or at one occasion.  The step is known. */
+void inflow_check_room(const struct job *job, const struct bodies *bodies,
+                       struct mistakes *mistakes);
+/* Warns of those that would fall behind for the same reason, and of those of which it is no
+ * more than likely because bodies move, regions take spheres out or gravity changes. */
+void inflow_warn(const struct job *job, const struct bodies *bodies);
+
 #endif

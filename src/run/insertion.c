@@ -23,10 +23,26 @@ static const double PI = 3.14159265358979323846;
 /* What rounding of a rate times a time may take off a whole number. */
 static const double HAIR = 1e-9;
 
+/* Notes to which bodies' insides an insertion has no access. */
+static void find_solids(struct insertions *insertions, struct insertion *insertion,
+                        const struct bodies *bodies)
+{
+    insertion->solid = array_allocate((size_t)bodies->n, sizeof *insertion->solid);
+    for (int b = 0; b < bodies->n; b++) {
+        const struct mesh *mesh = &bodies->list[b].mesh;
+        insertion->solid[b] = region_meets_solid(&insertion->region, &bodies->list[b]);
+        if (insertion->solid[b] && insertions->surfaces[b] == NULL)
+            insertions->surfaces[b] = region_surface_build(mesh, mesh->reference);
+    }
+}
+
 void insertions_init(struct insertions *insertions, const struct job *job,
                      const struct bodies *bodies)
 {
-    *insertions = (struct insertions){.n = job->n_insertions};
+    struct periodic periodic;
+    periodic_init(&periodic, job);
+    *insertions = (struct insertions){.n = job->n_insertions, .n_surfaces = bodies->n};
+    insertions->surfaces = array_allocate((size_t)bodies->n, sizeof(void *));
     insertions->list = array_allocate((size_t)insertions->n, sizeof *insertions->list);
     for (int i = 0; i < insertions->n; i++) {
         struct insertion *insertion = &insertions->list[i];
@@ -36,6 +52,8 @@ void insertions_init(struct insertions *insertions, const struct job *job,
         insertion->number = i;
         CHECK(region_build(&insertion->region, &insertion->asked->region, bodies, &why), "%s",
               why);
+        region_repeat(&insertion->region, &periodic);
+        find_solids(insertions, insertion, bodies);
         sizes_build(&insertion->sizes, &insertion->asked->sizes, insertion->asked->radius);
         tally_init(&insertion->tally, &split);
     }
@@ -47,7 +65,11 @@ void insertions_clear(struct insertions *insertions)
         region_clear(&insertions->list[i].region);
         sizes_clear(&insertions->list[i].sizes);
         tally_clear(&insertions->list[i].tally);
+        free(insertions->list[i].solid);
     }
+    for (int b = 0; b < insertions->n_surfaces; b++)
+        region_surface_destroy(insertions->surfaces[b]);
+    free(insertions->surfaces);
     free(insertions->list);
     free(insertions->new);
     *insertions = (struct insertions){0};
@@ -194,13 +216,11 @@ static bool is_near(const struct region *region, struct vec3 x, double radius)
            x.x < high.x + radius && x.y < high.y + radius && x.z < high.z + radius;
 }
 
-/* Adds the sphere, and its images over periodic boundaries, where they may be in the way.  New
- * spheres lie wholly within the domain and cannot meet each other's images. */
-static void add_to_crowd(struct insertions *all, const struct spheres *spheres, int i,
-                         int n_shifts, double shifts[PERIODIC_IMAGES][3])
+/* Adds a sphere, and its images over periodic boundaries, where they may be in the way of
+ * insertions that have an occasion. */
+static void add_to_crowd(struct insertions *all, struct vec3 place, double radius, int n_shifts,
+                         double shifts[PERIODIC_IMAGES][3])
 {
-    const struct vec3 place = sphere_place(spheres, i);
-    const double radius = sphere_radius(spheres, i);
     for (int s = 0; s < n_shifts; s++) {
         const struct vec3 shift = {shifts[s][0], shifts[s][1], shifts[s][2]};
         const struct vec3 x = vec3_add(place, shift);
@@ -232,7 +252,8 @@ static void fill_crowd(struct simulation *sim, const unsigned char *removed)
     crowd_init(&all->crowd, greatest);
     for (int i = 0; i < spheres->n_owned; i++) {
         if (removed == NULL || !removed[i])
-            add_to_crowd(all, spheres, i, n_shifts, shifts);
+            add_to_crowd(all, sphere_place(spheres, i), sphere_radius(spheres, i), n_shifts,
+                         shifts);
     }
     comm_max(sim->comm, &all->radius_max, 1);
 }
@@ -254,13 +275,39 @@ static bool draw_place(const struct simulation *sim, struct insertion *insertion
     return false;
 }
 
+/* Brings the surfaces of solid bodies to where they are. */
+static void move_solids(struct simulation *sim)
+{
+    struct region_surface **surfaces = sim->insertions.surfaces;
+    for (int b = 0; b < sim->bodies.n; b++) {
+        const struct body *body = &sim->bodies.list[b];
+        if (surfaces[b] == NULL || !body->moves)
+            continue;
+        region_surface_destroy(surfaces[b]);
+        surfaces[b] = region_surface_build(&body->mesh, body->mesh.place);
+    }
+}
+
+/* Is the place inside a solid body? */
+static bool is_buried(const struct simulation *sim, const struct insertion *insertion,
+                      struct vec3 place)
+{
+    for (int b = 0; b < sim->bodies.n; b++)
+        if (insertion->solid[b] && sim->bodies.list[b].exists &&
+            region_surface_holds(sim->insertions.surfaces[b], place))
+            return true;
+    return false;
+}
+
 /* Is something of this rank in the way?  Bodies are everywhere: ranks take turns with them. */
-static bool is_blocked(struct simulation *sim, struct vec3 place, double radius, int64_t turn)
+static bool is_blocked(struct simulation *sim, const struct insertion *insertion,
+                       struct vec3 place, double radius, int64_t turn)
 {
     if (!crowd_has_room(&sim->insertions.crowd, place, radius, 0.0))
         return true;
     return turn % sim->comm->n_ranks == sim->comm->rank &&
-           facet_contacts_meet(&sim->facets, &sim->bodies, place, radius);
+           (facet_contacts_meet(&sim->facets, &sim->bodies, place, radius) ||
+            is_buried(sim, insertion, place));
 }
 
 /* --------------------------------------------------------------------------------------
@@ -288,7 +335,7 @@ static void propose(struct simulation *sim, struct insertion *insertion, struct 
         round->slot[round->n] = w;
         round->blocked[round->n++] =
             !draw_place(sim, insertion, sphere->radius, &sphere->position) ||
-            is_blocked(sim, sphere->position, sphere->radius, turn);
+            is_blocked(sim, insertion, sphere->position, sphere->radius, turn);
     }
     comm_max_int(sim->comm, round->blocked, round->n);
 }
@@ -307,9 +354,10 @@ static void take_in(struct simulation *sim, struct insertion *insertion,
                       mass_of(sim, sphere));
 }
 
-static bool overlap(const struct packing_sphere *a, const struct packing_sphere *b)
+static bool overlap(const struct periodic *periodic, const struct packing_sphere *a,
+                    const struct packing_sphere *b)
 {
-    const struct vec3 apart = vec3_sub(b->position, a->position);
+    const struct vec3 apart = periodic_shortest(periodic, vec3_sub(b->position, a->position));
     const double reach = a->radius + b->radius;
     return vec3_dot(apart, apart) < reach * reach;
 }
@@ -317,13 +365,16 @@ static bool overlap(const struct packing_sphere *a, const struct packing_sphere 
 /* Accepts in order what nothing blocks and what overlaps none that this round has accepted. */
 static void accept(struct simulation *sim, struct insertion *insertion, struct round *round)
 {
+    const struct periodic *periodic = &sim->spheres.periodic;
+    double shifts[PERIODIC_IMAGES][3];
+    const int n_shifts = periodic_shifts(periodic, shifts);
     bool placed[INSERTION_WAITING] = {false};
     int n = 0;
     for (int a = 0; a < round->n; a++) {
         const struct packing_sphere *sphere = &round->spheres[a];
         bool free = !round->blocked[a];
         for (int b = 0; b < a && free; b++)
-            free = !placed[round->slot[b]] || !overlap(&round->spheres[b], sphere);
+            free = !placed[round->slot[b]] || !overlap(periodic, &round->spheres[b], sphere);
         if (!free)
             continue;
         placed[round->slot[a]] = true;
@@ -331,8 +382,8 @@ static void accept(struct simulation *sim, struct insertion *insertion, struct r
     }
     for (int a = 0; a < round->n; a++)
         if (placed[round->slot[a]])
-            crowd_add(&sim->insertions.crowd, round->spheres[a].position,
-                      round->spheres[a].radius);
+            add_to_crowd(&sim->insertions, round->spheres[a].position, round->spheres[a].radius,
+                         n_shifts, shifts);
     for (int w = 0; w < insertion->n_waiting; w++)
         if (!placed[w])
             insertion->waiting[n++] = insertion->waiting[w];
@@ -401,6 +452,7 @@ int insertions_try(struct simulation *sim, const unsigned char *removed)
     if (!any)
         return 0;
     facet_contacts_refit(&sim->facets, &sim->bodies);
+    move_solids(sim);
     fill_crowd(sim, removed);
     for (int k = 0; k < all->n; k++)
         if (all->list[k].occasion)

@@ -47,6 +47,7 @@ struct insertion {
     int number;    /* in the job */
     struct region region;
     struct sizes sizes;
+    bool *solid; /* bodies whose inside is not for it */
     /* State, the same on all ranks. */
     int64_t n_attempts, n_drawn, n_inserted;
     double mass_drawn; /* [kg] */
@@ -67,8 +68,11 @@ struct insertion_new {
 struct insertions {
     int n;
     struct insertion *list;
-    struct crowd crowd;      /* who could be in the way at this step */
-    int n_new, new_capacity; /* to be placed by insertions_place() */
+    struct crowd crowd; /* who could be in the way at this step */
+    int n_surfaces;
+    struct region_surface **surfaces; /* of bodies that are solid to one of them, as they were
+                                       * at the last occasion; else NULL */
+    int n_new, new_capacity;          /* to be placed by insertions_place() */
     struct insertion_new *new;
     double radius_max; /* of all spheres in the run, where there are new ones [m] */
 };

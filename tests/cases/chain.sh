@@ -167,5 +167,5 @@ refused "spheres 'more': the region: 'bin' is not closed: 4 of its edges are ope
 result "the inside of an open body"
 
 refused "spheres 'more': random addition was asked for" "$scenes/chain.yaml" $from --set spheres.0.packing.count=100000
-says "after 10000 attempts for the next; less, a lattice, or letting them settle is expected"
+says ": no room is left for the next; less, a lattice, or letting them settle is expected"
 result "more spheres than find room"

@@ -2,6 +2,7 @@
 # What a user meets of insertion, removal and contents: what `check` foresees, how a full region is
 # called, the tool that shows them, a stream that stops and starts from nothing.
 set -uo pipefail
+root=$PWD
 # shellcheck source=tests/cases/common.sh
 . "$(dirname "$0")/common.sh"
 
@@ -161,3 +162,50 @@ equal {one,three}/checkpoints/step_000000002000.h5
 says "came in by later: 10 spheres"
 says "taken out by all: 10 spheres"
 result "resumed when it was empty"
+
+# ------------------------------------------------------------------ bodies and boundaries in the way
+cat > solids.yaml << 'END_OF_JOB'
+time: {end: 0.02, step: 1.0e-4}
+materials:
+  ore: {density: 2400, young: 5.0e7, poisson: 0.2}
+contact:
+  pairs: [{between: [ore, ore], friction: 0.5, restitution: 0.5}]
+insert:
+  - {name: fog, material: ore, radius: 0.01, region: {kind: box, min: [0, 0, 0], max: [1, 0.5, 0.5]}, rate: {number: 1.0e5}, every: 10}
+bodies:
+  - {name: rock, material: ore, geometry: {kind: box, min: [0.6, 0.1, 0.1], max: [0.9, 0.4, 0.4]}}
+  - name: roll
+    material: ore
+    geometry: {kind: cylinder, from: [0.3, 0.1, 0.25], to: [0.3, 0.4, 0.25], radius: 0.2, caps: [from, to]}
+    motion: {rotation: {point: [0.3, 0, 0.25], axis: [0, 1, 0], rate: 20}}
+contents:
+  - {name: rock_inside, region: {kind: inside, body: rock}}
+  - {name: roll_inside, region: {kind: inside, body: roll}}
+  - {name: low_edge, region: {kind: box, min: [0, 0, 0], max: [0.009, 0.5, 0.5]}}
+  - {name: high_edge, region: {kind: box, min: [0.991, 0, 0], max: [1, 0.5, 0.5]}}
+domain: {min: [0, -1, -1], max: [1, 1, 1], periodic: x}
+checkpoint: {every: {wall: 0, steps: 50}, keep: 100}
+END_OF_JOB
+run 1 still solids
+run 3 likewise solids
+same_run still likewise
+"$bin/tremie-contents" still --csv contents.csv > said 2>&1 || why+=" tremie-contents gives status $?;"
+awk -F, 'NR == 1 { for (k = 1; k <= NF; k++) column[$k] = k }
+    END { low = $column["low_edge.count"]; high = $column["high_edge.count"]
+          exit !(column["rock_inside.count"] && column["roll_inside.count"] && $column["rock_inside.count"] == 0 &&
+              $column["roll_inside.count"] == 0 && low > 10 && high > 10) }' \
+    contents.csv || why+=" $(tail -n 1 contents.csv);"
+result "none comes in inside a closed body, and some at a periodic boundary"
+
+# ------------------------------------------------------------------ room, before the run
+sed '/^domain:/i remove: [{name: all, region: {kind: box, min: [0, 0, 0.08], max: [0.2, 0.2, 0.1]}}]' \
+    "$root/tests/cases/bad/insert_full.yaml" > likely.yaml
+tremie 1 check likely.yaml || why+=" check gives status $?;"
+says "warning: insert 'jam': of 2e+04 spheres a second, which stay in the region for 0.0496 s"
+says "991.2 would be there at a time, 104 % of its volume, where at most 38.4 % find room at random; it will stop the run: "
+sed 's/when_full: stop, //; s/end: 1.0/end: 0.005/' "$root/tests/cases/bad/insert_full.yaml" > waits.yaml
+run 2 waits waits
+says "warning: insert 'burst': of 1e+05 spheres a second, "
+says "it will fall behind: enlarge the region, "
+grep -q "insert 'fine'" said && why+=" warns of one that is fine;"
+result "a region too full, foreseen"

@@ -1,6 +1,8 @@
 /* The job file: what is read, what is refused and with which words, round trips, libraries. */
 #include "check.h"
 
+#include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -465,6 +467,34 @@ TEST(size_classes_lie_between_the_radii_that_are_named)
     EXPECT_NEAR(auto_classes->classes[1], 0.0065, 1e-15);
     EXPECT_NEAR(auto_classes->classes[2], 0.0215, 1e-15);
     EXPECT(job.sections[2].n_classes == 2 && job.sections[2].classes[1] == 0.1 + 0.2);
+}
+
+/* A distribution between two radii has eight classes, a curve those of its radii; a radius
+ * beyond has its own. */
+#define DISTRIBUTED(sizes, more)                                                               \
+    START "spheres:\n  - {name: s, material: ore, sizes: " sizes ", packing: {kind: random, "  \
+          "count: 5, region: {kind: box, min: [0, 0, 0], max: [9, 9, 9]}}}\n" more             \
+          "sections: [{name: t, point: [0, 0, 0.7], normal: [1, 1, 0], by: size}]\n"
+
+TEST(size_classes_divide_distributions)
+{
+    static const char single[] = "  - {name: big, material: ore, radius: 1, packing: {kind: "
+                                 "lattice, count: 1, spacing: 2, corner: [0, 0, 0], size: "
+                                 "[2, 2]}}\n";
+    EXPECT(job_from(DISTRIBUTED("{kind: uniform, min: 0.01, max: 0.16}", ""), 0, NULL));
+    EXPECT(job.sections[0].n_classes == 7);
+    for (int k = 0; k < 7; k++)
+        EXPECT_NEAR(job.sections[0].classes[k], 0.01 * pow(16.0, (k + 1) / 8.0), 1e-15);
+    EXPECT(is_stable());
+    char text[4096];
+    snprintf(text, sizeof text,
+             DISTRIBUTED("{kind: table, radii: [{radius: 0.1, share: 0}, {radius: 0.2, share: "
+                         "0.5}, {radius: 0.3, share: 1}]}",
+                         "%s"),
+             single);
+    EXPECT(job_from(text, 0, NULL));
+    EXPECT(job.sections[0].n_classes == 2);
+    EXPECT(job.sections[0].classes[0] == 0.2 && job.sections[0].classes[1] == 0.3);
 }
 
 TEST(jobs_and_library_of_the_project)

@@ -97,6 +97,124 @@ static const char GMSH_41[] =
     "2 1 2 2\n7 10 12 13\n8 10 13 11\n"
     "2 2 3 1\n9 24 23 21 22\n$EndElements\n";
 
+/* ---- The same two files in bytes */
+
+static void put_bytes(struct file *file, const void *bytes, size_t n)
+{
+    EXPECT(file->n + n < ROOM);
+    memcpy(file->bytes + file->n, bytes, n);
+    file->n += n;
+}
+
+/* The next n numbers of a text, as doubles, or whole numbers of 4 or 8 bytes: d, i, l; returns
+ * the last. */
+static int64_t put_numbers(struct file *file, const char **text, char kind, int64_t n)
+{
+    double value = 0.0;
+    for (int64_t k = 0; k < n; k++) {
+        char *end;
+        value = strtod(*text, &end);
+        *text = end;
+        const int32_t narrow = (int32_t)value;
+        const int64_t wide = (int64_t)value;
+        if (kind == 'd')
+            put_bytes(file, &value, sizeof value);
+        else if (kind == 'i')
+            put_bytes(file, &narrow, sizeof narrow);
+        else
+            put_bytes(file, &wide, sizeof wide);
+    }
+    return (int64_t)value;
+}
+
+/* Copies a text up to and with this line; returns where it goes on. */
+static const char *put_until(struct file *file, const char *text, const char *line)
+{
+    const char *end = strstr(text, line) + strlen(line);
+    put_bytes(file, text, (size_t)(end - text));
+    return end;
+}
+
+static int64_t corners_of(int64_t type)
+{
+    return type == 15 ? 1 : type == 1 ? 2 : type == 2 ? 3 : 4;
+}
+
+static struct file binary_22(void)
+{
+    struct file file = {0};
+    const char *at = GMSH_22 + strlen("$MeshFormat\n2.2 0 8\n");
+    const int32_t one = 1;
+    put(&file, "$MeshFormat\n2.2 1 8\n");
+    put_bytes(&file, &one, sizeof one);
+    at = put_until(&file, at, "$Nodes\n8\n");
+    for (int k = 0; k < 8; k++) {
+        put_numbers(&file, &at, 'i', 1);
+        put_numbers(&file, &at, 'd', 3);
+    }
+    at = put_until(&file, at, "$Elements\n9\n");
+    for (int k = 0; k < 9;) { /* the four quads are a block */
+        struct file words = {0};
+        const int32_t number = (int32_t)put_numbers(&words, &at, 'i', 1);
+        const int64_t type = put_numbers(&words, &at, 'i', 1);
+        const int32_t n = type == 3 && k < 6 ? 4 : 1;
+        const int32_t head[2] = {(int32_t)type, n};
+        put_bytes(&file, head, sizeof head);
+        const int64_t n_tags = put_numbers(&file, &at, 'i', 1);
+        put_bytes(&file, &number, sizeof number);
+        put_numbers(&file, &at, 'i', n_tags + corners_of(type));
+        for (int32_t m = 1; m < n; m++) {
+            put_numbers(&file, &at, 'i', 1);
+            put_numbers(&words, &at, 'i', 2);
+            put_numbers(&file, &at, 'i', n_tags + corners_of(type));
+        }
+        k += n;
+    }
+    put(&file, at);
+    return file;
+}
+
+static void put_entity(struct file *file, const char **at, int dimension)
+{
+    put_numbers(file, at, 'i', 1);
+    put_numbers(file, at, 'd', dimension == 0 ? 3 : 6);
+    put_numbers(file, at, 'i', put_numbers(file, at, 'l', 1));
+    if (dimension > 0)
+        put_numbers(file, at, 'i', put_numbers(file, at, 'l', 1));
+}
+
+static struct file binary_41(void)
+{
+    static const int entities[4] = {0, 1, 2, 2};
+    struct file file = {0};
+    const char *at = GMSH_41 + strlen("$MeshFormat\n4.1 0 8\n");
+    const int32_t one = 1;
+    put(&file, "$MeshFormat\n4.1 1 8\n");
+    put_bytes(&file, &one, sizeof one);
+    at = put_until(&file, at, "$Entities\n");
+    put_numbers(&file, &at, 'l', 4);
+    for (int k = 0; k < 4; k++)
+        put_entity(&file, &at, entities[k]);
+    at = put_until(&file, at, "$Nodes\n");
+    put_numbers(&file, &at, 'l', 4);
+    for (int64_t b = 0; b < 2; b++) {
+        put_numbers(&file, &at, 'i', 2);
+        const int64_t parametric = put_numbers(&file, &at, 'i', 1);
+        const int64_t n = put_numbers(&file, &at, 'l', 1);
+        put_numbers(&file, &at, 'l', n);
+        put_numbers(&file, &at, 'd', n * (parametric != 0 ? 5 : 3));
+    }
+    at = put_until(&file, at, "$Elements\n");
+    put_numbers(&file, &at, 'l', 4);
+    for (int b = 0; b < 4; b++) {
+        put_numbers(&file, &at, 'i', 2);
+        const int64_t type = put_numbers(&file, &at, 'i', 1);
+        put_numbers(&file, &at, 'l', put_numbers(&file, &at, 'l', 1) * (1 + corners_of(type)));
+    }
+    put(&file, at);
+    return file;
+}
+
 static struct mesh_survey survey_of(const struct surface *surface)
 {
     struct mesh mesh;
@@ -182,11 +300,11 @@ TEST(damaged_stl_files_say_where_and_what)
     refused(&file, "f:83:49: the file ends here; 'endloop' after three vertices is expected");
 }
 
-static void expect_group(const char *text, const char *group, int n_facets, double area)
+static void expect_group(const struct file *file, const char *group, int n_facets, double area)
 {
     struct surface surface;
     char *why = NULL;
-    EXPECT(gmsh_read(&surface, "f", text, strlen(text), group, &why));
+    EXPECT(gmsh_read(&surface, "f", file->bytes, file->n, group, &why));
     EXPECT(why == NULL && surface.n_facets == n_facets);
     EXPECT_NEAR(survey_of(&surface).area, area, 1e-14);
     EXPECT(survey_of(&surface).closed == (group == NULL) && survey_of(&surface).n_turned == 0);
@@ -196,13 +314,54 @@ static void expect_group(const char *text, const char *group, int n_facets, doub
 
 TEST(gmsh_files_give_their_physical_groups)
 {
-    const char *const texts[2] = {GMSH_22, GMSH_41};
-    for (int k = 0; k < 2; k++) {
-        expect_group(texts[k], NULL, 7, 6.0);
-        expect_group(texts[k], "the walls", 6, 5.0);
-        expect_group(texts[k], "lid", 1, 1.0);
-        expect_group(texts[k], "6", 1, 1.0);
+    struct file files[4] = {{0}, {0}, binary_22(), binary_41()};
+    put(&files[0], GMSH_22);
+    put(&files[1], GMSH_41);
+    for (int k = 0; k < 4; k++) {
+        expect_group(&files[k], NULL, 7, 6.0);
+        expect_group(&files[k], "the walls", 6, 5.0);
+        expect_group(&files[k], "lid", 1, 1.0);
+        expect_group(&files[k], "6", 1, 1.0);
     }
+}
+
+static void refused_binary(const struct file *file, const char *expected)
+{
+    struct surface surface;
+    char *why = NULL;
+    EXPECT(!gmsh_read(&surface, "f", file->bytes, file->n, NULL, &why));
+    EXPECT_STRING(why, expected);
+    EXPECT(surface.n_facets == 0 && surface.facets == NULL);
+    free(why);
+}
+
+TEST(damaged_binary_gmsh_files_say_at_which_byte)
+{
+    struct file file = binary_22();
+    const size_t order = strlen("$MeshFormat\n2.2 1 8\n");
+    file.bytes[order] = 0;
+    file.bytes[order + 3] = 1;
+    refused_binary(&file, "f: byte 21: this is a big-endian file; a little-endian one, or an "
+                          "ASCII one (gmsh -bin 0) is expected");
+    file.bytes[order + 3] = 2;
+    refused_binary(&file, "f: byte 21: this is no byte order; a one is expected");
+    file = binary_22();
+    file.bytes[order - 2] = '4';
+    refused_binary(&file, "f:2:7: '4' is not what belongs here; 8, the bytes of a number, is "
+                          "expected");
+    file = binary_41(); /* cut anywhere before the elements end */
+    const char *const end = "$EndElements";
+    const size_t whole = file.n - strlen(end) - 1;
+    for (size_t n = 1; n < whole; n++) {
+        struct surface surface;
+        char *why = NULL;
+        struct file cut = {.n = n};
+        memcpy(cut.bytes, file.bytes, n);
+        EXPECT(!gmsh_read(&surface, "f", cut.bytes, cut.n, NULL, &why) && why != NULL);
+        free(why);
+    }
+    file.n = whole - 9;
+    refused_binary(&file, "f: byte 1233: the file ends here; the rest of it is expected");
 }
 
 /* A text with one piece of it replaced. */
@@ -229,9 +388,10 @@ TEST(damaged_gmsh_files_say_where_and_what)
     refused_gmsh(GMSH_22, "2.2", "1.0", NULL,
                  "f:2:1: '1.0' is not what belongs here; version 2.2 or 4.1 (gmsh -format "
                  "msh41) is expected");
-    refused_gmsh(GMSH_41, "4.1 0", "4.1 1", NULL,
-                 "f:2:5: this is a binary .msh file; an ASCII one (gmsh -bin 0, Mesh.Binary = "
-                 "0) is expected");
+    refused_gmsh(
+        GMSH_41, "4.1 0", "4.1 2", NULL,
+        "f:2:5: '2' is not what belongs here; 0 for an ASCII file or 1 for a binary one "
+        "is expected");
     refused_gmsh(GMSH_22, "3 3 2 5", "3 10 2 5", NULL,
                  "f:25:3: elements of type 10, which are curved; triangles and quads of first "
                  "order (gmsh -order 1) are expected");
@@ -328,10 +488,11 @@ TEST(files_changed_at_random_are_read_or_refused)
     const char *count = getenv("MUTATIONS");
     const int n = count != NULL ? atoi(count) : 1000;
     for (int k = 0; k < n; k++) {
-        struct file files[4] = {ascii_cube(), binary_cube("solid"), {0}, {0}};
+        struct file files[6] = {ascii_cube(), binary_cube("solid"), {0},
+                                {0},          binary_22(),          binary_41()};
         put(&files[2], GMSH_22);
         put(&files[3], GMSH_41);
-        for (int f = 0; f < 4; f++) {
+        for (int f = 0; f < 6; f++) {
             mutate(&files[f]);
             read_or_refuse(&files[f], f < 2, k % 2 == 0 ? "lid" : NULL);
         }
