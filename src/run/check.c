@@ -676,7 +676,8 @@ static void print_start(const struct job *job, const struct comm *comm)
                    deepest, critical, job->time.step / critical);
     else
         report_say("start     nothing touches");
-    if (deepest > 0.1 * job->watch.overlap)
+    const double much = job->start.given ? 0.5 : 0.1; /* who lies on others overlaps somewhat */
+    if (deepest > much * job->watch.overlap)
         report_warn("at the start %s overlap by %.2g of a radius; beyond watch.overlap = %.2g "
                     "the run stops",
                     what, deepest, job->watch.overlap);
