@@ -203,7 +203,7 @@ sed '/^domain:/i remove: [{name: all, region: {kind: box, min: [0, 0, 0.08], max
 tremie 1 check likely.yaml || why+=" check gives status $?;"
 says "warning: insert 'jam': of 2e+04 spheres a second, which stay in the region for 0.0496 s"
 says "991.2 would be there at a time, 104 % of its volume, where at most 38.4 % find room at random; it will stop the run: "
-sed 's/when_full: stop, //; s/end: 1.0/end: 0.013/' "$root/tests/cases/bad/insert_full.yaml" > waits.yaml
+sed 's/when_full: stop, //; s/end: 1.0/end: 0.0065/' "$root/tests/cases/bad/insert_full.yaml" > waits.yaml
 run 2 waits waits
 says "warning: insert 'burst': of 1e+05 spheres a second, "
 says "it will fall behind: enlarge the region, "
