@@ -473,7 +473,7 @@ void watch_energy(struct watch *watch, const struct simulation *sim)
 /* --------------------------------------------------------------------------------------
  * leavers */
 
-int watch_leavers(struct watch *watch, struct simulation *sim, unsigned char *removed)
+int64_t watch_leavers(struct watch *watch, struct simulation *sim, unsigned char *removed)
 {
     int64_t n = 0;
     int first = -1;
@@ -496,7 +496,7 @@ int watch_leavers(struct watch *watch, struct simulation *sim, unsigned char *re
         return 0;
     }
     watch->what[0] = '\0';
-    return (int)n;
+    return n;
 }
 
 /* --------------------------------------------------------------------------------------

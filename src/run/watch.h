@@ -13,6 +13,7 @@
 
 #include <stdbool.h>
 #include <stddef.h>
+#include <stdint.h>
 
 struct critical_step_sums;
 struct simulation;
@@ -91,7 +92,7 @@ double watch_deepest(const struct simulation *sim, char *what, size_t size);
 /* Spheres outside the domain that removed[] (n_owned flags) does not mark yet, at steps that
  * the job fixes: stops the run, or marks and counts them and returns how many there are on all
  * ranks.  Collective. */
-int watch_leavers(struct watch *watch, struct simulation *sim, unsigned char *removed);
+int64_t watch_leavers(struct watch *watch, struct simulation *sim, unsigned char *removed);
 
 /* Says what failed, where and what to do, on one rank.  Collective. */
 void watch_explain(const struct watch *watch, const struct simulation *sim);
