@@ -1,7 +1,8 @@
 /*
- * See contact_set.h.  History is carried from one list to the next by finding each touching
- * contact's pair in the row of its first sphere: rows are short, and an ordinary search moves
- * nothing in memory.
+ * See contact_set.h.  History is carried from one list to the next lane by lane, once it is known
+ * where each entry was before.  An ordinary search moves nothing in memory, so both lists are in
+ * the same order and are walked side by side; else each touching contact's pair is looked for in
+ * the row of its first sphere, which is short.
  */
 #include "contact/contact_set.h"
 
@@ -12,15 +13,6 @@
 #include "base/report.h"
 #include "contact/candidates.h"
 #include "model/sphere.h"
-
-static void list_clear(struct contact_list *list)
-{
-    free(list->first);
-    free(list->second);
-    for (int l = 0; l < CONTACT_LANES; l++)
-        free(list->history[l]);
-    *list = (struct contact_list){0};
-}
 
 void contact_set_init(struct contact_set *contacts, bool full, bool ledger)
 {
@@ -34,62 +26,52 @@ static bool has_lane(const struct contact_set *contacts, int lane)
 
 void contact_set_clear(struct contact_set *contacts)
 {
-    list_clear(&contacts->now);
-    list_clear(&contacts->before);
+    free(contacts->now.first);
+    free(contacts->now.second);
+    for (int l = 0; l < CONTACT_LANES; l++)
+        free(contacts->now.history[l]);
+    free(contacts->before.first);
+    free(contacts->before.second);
+    free(contacts->source);
+    free(contacts->spare);
     free(contacts->row_begin);
     free(contacts->row_end);
     *contacts = (struct contact_set){0};
 }
 
-/* Capacity for n entries, the padding and what kernels look ahead; 0: there is room. */
-static size_t capacity_for(int n, int capacity)
+/* Room for the pairs of n entries, the padding and what kernels look ahead; those there are
+ * stay. */
+static void reserve_pairs(struct contact_set *contacts, int n)
 {
-    const int needed = n + CONTACT_PAD + CONTACT_AHEAD;
-    return needed <= capacity
-               ? 0
-               : array_capacity((size_t)capacity, (size_t)needed + (size_t)needed / 8);
-}
-
-/* Room for the pairs of n entries; contents are lost. */
-static void list_reserve_pairs(struct contact_list *list, int n)
-{
-    const size_t capacity = capacity_for(n, list->capacity);
-    if (capacity == 0)
+    struct contact_list *list = &contacts->now;
+    const size_t old = (size_t)contacts->pair_capacity;
+    const size_t needed = (size_t)n + CONTACT_PAD + CONTACT_AHEAD;
+    if (needed <= old)
         return;
-    free(list->first);
-    free(list->second);
-    list->capacity = (int)capacity;
-    list->first = array_allocate_rows(capacity, sizeof(int));
-    list->second = array_allocate_rows(capacity, sizeof(int));
+    const size_t capacity = needed + needed / 8;
+    list->first = array_resize_rows(list->first, old, capacity, sizeof(int));
+    list->second = array_resize_rows(list->second, old, capacity, sizeof(int));
+    contacts->pair_capacity = (int)capacity;
 }
 
-/* Room for the history of n entries; contents are lost. */
-static void list_reserve_history(const struct contact_set *contacts, struct contact_list *list,
-                                 int n)
+/* The present pairs become those before; what they replace is room for the next. */
+static void exchange_pairs(struct contact_set *contacts)
 {
-    const size_t capacity = capacity_for(n, list->history_capacity);
-    if (capacity == 0)
-        return;
-    list->history_capacity = (int)capacity;
-    for (int l = 0; l < CONTACT_LANES; l++) {
-        if (!has_lane(contacts, l))
-            continue;
-        free(list->history[l]);
-        list->history[l] = array_allocate_rows(capacity, sizeof(double));
-    }
+    const struct contact_pairs old = contacts->before;
+    contacts->before = (struct contact_pairs){contacts->now.n, contacts->pair_capacity,
+                                              contacts->now.first, contacts->now.second};
+    contacts->now.first = old.first;
+    contacts->now.second = old.second;
+    contacts->pair_capacity = old.capacity;
 }
 
-static void list_pad(struct contact_set *contacts, int dummy)
+static void pad_pairs(struct contact_set *contacts, int dummy)
 {
     struct contact_list *list = &contacts->now;
     list->n_padded = (list->n + CONTACT_PAD - 1) / CONTACT_PAD * CONTACT_PAD;
     for (int k = list->n; k < list->n_padded + CONTACT_AHEAD; k++) {
         list->first[k] = dummy;
         list->second[k] = dummy + 1;
-    }
-    for (int l = 0; l < CONTACT_LANES; l++) {
-        for (int k = list->n; has_lane(contacts, l) && k < list->n_padded; k++)
-            list->history[l][k] = 0.0;
     }
 }
 
@@ -117,6 +99,7 @@ static void select_pairs(struct contact_set *contacts, const struct candidates *
         const double *a = spheres->motion[i].lane;
         const double reach = a[3] + inner[i];
         contacts->row_begin[i] = n;
+        reserve_pairs(contacts, n + (candidates->row_end[place] - begin));
         for (int k = begin; k < candidates->row_end[place]; k++) {
             const int j = candidates->second[k];
             const double *b = spheres->motion[j].lane;
@@ -130,11 +113,6 @@ static void select_pairs(struct contact_set *contacts, const struct candidates *
         begin = candidates->row_end[place];
     }
     list->n = n;
-    list_reserve_history(contacts, list, n);
-    for (int l = 0; l < CONTACT_LANES; l++) {
-        for (int k = 0; has_lane(contacts, l) && k < n; k++)
-            list->history[l][k] = 0.0;
-    }
 }
 
 /* Entry of the pair, -1 when it is not listed.  Rows are short, but those of spheres that are
@@ -165,18 +143,33 @@ static double seen_from(bool other_side, int lane, double h)
     return other_side && contact_lane_turns(lane) ? -h : h;
 }
 
-/* Writes the history where the two are listed; false where they are not. */
-static bool place_between(struct contact_set *contacts, const struct candidates *candidates,
-                          int first, int second, const double history[CONTACT_LANES])
+/* What a contact remembers, as seen from its first: entry `before`, or a history given. */
+struct memory {
+    int before;
+    const double *history; /* NULL: entry `before` */
+};
+
+static void write_history(struct contact_set *contacts, int entry, bool turned,
+                          const double history[CONTACT_LANES])
 {
-    const bool turned = candidates->place[first] > candidates->place[second];
-    const int entry = turned ? find_entry(contacts, candidates, second, first)
-                             : find_entry(contacts, candidates, first, second);
-    if (entry < 0)
-        return false;
     for (int l = 0; l < CONTACT_LANES; l++)
         if (has_lane(contacts, l))
             contacts->now.history[l][entry] = seen_from(turned, l, history[l]);
+}
+
+/* Gives the memory to where the two are listed; false where they are not. */
+static bool place_between(struct contact_set *contacts, const struct candidates *candidates,
+                          int first, int second, bool turned, struct memory memory)
+{
+    const bool swapped = candidates->place[first] > candidates->place[second];
+    const int entry = swapped ? find_entry(contacts, candidates, second, first)
+                              : find_entry(contacts, candidates, first, second);
+    if (entry < 0)
+        return false;
+    if (memory.history != NULL)
+        write_history(contacts, entry, turned != swapped, memory.history);
+    else
+        contacts->source[entry] = 2 * memory.before + (turned != swapped);
     return true;
 }
 
@@ -201,11 +194,11 @@ static double distance2_of(const struct spheres *spheres, int i, int j)
     return dx * dx + dy * dy + dz * dz;
 }
 
-/* Writes the history between each owned copy of `first` and the copy of `second` that is
- * nearest to it: periods are so long that no other touches. */
+/* Gives the memory to each owned copy of `first` and the copy of `second` that is nearest to
+ * it: periods are so long that no other touches. */
 static bool place_copies(struct contact_set *contacts, const struct candidates *candidates,
                          const struct spheres *spheres, int first, int second, bool turned,
-                         const double history[CONTACT_LANES])
+                         struct memory memory)
 {
     int a[2], b[2];
     bool placed = false;
@@ -219,34 +212,40 @@ static bool place_copies(struct contact_set *contacts, const struct candidates *
             nearest =
                 distance2_of(spheres, i, j) < distance2_of(spheres, i, nearest) ? j : nearest;
         }
-        if (i < spheres->n_owned && place_between(contacts, candidates, turned ? nearest : i,
-                                                  turned ? i : nearest, history))
+        if (i < spheres->n_owned &&
+            place_between(contacts, candidates, i, nearest, turned, memory))
             placed = true;
     }
     return placed;
 }
 
-static void place_history(struct contact_set *contacts, const struct candidates *candidates,
-                          const struct spheres *spheres, int first, int second,
-                          const double history[CONTACT_LANES])
+static void place_memory(struct contact_set *contacts, const struct candidates *candidates,
+                         const struct spheres *spheres, int first, int second,
+                         struct memory memory)
 {
     bool placed;
     if (spheres->periodic.any) {
-        placed = place_copies(contacts, candidates, spheres, first, second, false, history);
+        placed = place_copies(contacts, candidates, spheres, first, second, false, memory);
         placed =
-            place_copies(contacts, candidates, spheres, second, first, true, history) || placed;
+            place_copies(contacts, candidates, spheres, second, first, true, memory) || placed;
     } else {
-        placed = place_between(contacts, candidates, first, second, history);
+        placed = place_between(contacts, candidates, first, second, false, memory);
     }
     CHECK(placed, "a touching contact is not in the list");
 }
 
-static void carry_history(struct contact_set *contacts, const struct candidates *candidates,
-                          const struct spheres *spheres, const int *moved)
+static bool touched_before(const struct contact_set *contacts, int k)
 {
-    const struct contact_list *before = &contacts->before;
+    return contacts->now.history[CONTACT_RADIUS_LANE][k] > 0.0;
+}
+
+/* Where the entries of the list come from, if spheres moved in memory. */
+static void find_sources(struct contact_set *contacts, const struct candidates *candidates,
+                         const struct spheres *spheres, const int *moved)
+{
+    const struct contact_pairs *before = &contacts->before;
     for (int k = 0; k < before->n; k++) {
-        if (!contact_touches(before, k))
+        if (!touched_before(contacts, k))
             continue;
         const int first = moved == NULL ? before->first[k] : moved[before->first[k]];
         const int second = moved == NULL ? before->second[k] : moved[before->second[k]];
@@ -254,35 +253,113 @@ static void carry_history(struct contact_set *contacts, const struct candidates 
         if (first < 0 || second < 0 ||
             (first >= spheres->n_owned && second >= spheres->n_owned))
             continue;
-        double history[CONTACT_LANES];
-        for (int l = 0; l < CONTACT_LANES; l++)
-            history[l] = has_lane(contacts, l) ? before->history[l][k] : 0.0;
-        place_history(contacts, candidates, spheres, first, second, history);
+        place_memory(contacts, candidates, spheres, first, second,
+                     (struct memory){.before = k});
     }
+}
+
+/* The same where nothing moved: both lists are in the same order, row by row. */
+static void match_rows(struct contact_set *contacts)
+{
+    const struct contact_pairs *before = &contacts->before;
+    const int *second = contacts->now.second;
+    int row = -1, k = 0, end = 0;
+    for (int b = 0; b < before->n; b++) {
+        if (!touched_before(contacts, b))
+            continue;
+        if (before->first[b] != row) {
+            row = before->first[b];
+            k = contacts->row_begin[row];
+            end = contacts->row_end[row];
+        }
+        while (k < end && second[k] != before->second[b])
+            k++;
+        CHECK(k < end, "a touching contact is not in the list");
+        contacts->source[k] = 2 * b;
+    }
+}
+
+/* One lane anew from the old one, in the spare one, which the old one then is. */
+static void carry_lane(struct contact_set *contacts, int lane)
+{
+    const struct contact_list *list = &contacts->now;
+    const bool turns = contact_lane_turns(lane);
+    const int *source = contacts->source;
+    const double *old = contacts->now.history[lane];
+    double *new = contacts->spare;
+    for (int k = 0; k < list->n; k++) {
+        const double h = source[k] >= 0 ? old[source[k] >> 1] : 0.0;
+        new[k] = turns && (source[k] & 1) && source[k] >= 0 ? -h : h;
+    }
+    for (int k = list->n; k < list->n_padded; k++)
+        new[k] = 0.0;
+    contacts->spare = contacts->now.history[lane];
+    contacts->now.history[lane] = new;
+}
+
+/* Lanes for the present list.  Where they have to grow each is made before the old one goes. */
+static void carry_history(struct contact_set *contacts)
+{
+    const size_t needed = (size_t)contacts->now.n_padded;
+    const bool grow = needed > (size_t)contacts->history_capacity;
+    const size_t capacity = grow ? needed + needed / 8 : (size_t)contacts->history_capacity;
+    for (int l = 0; l < CONTACT_LANES; l++) {
+        if (!has_lane(contacts, l))
+            continue;
+        if (grow) {
+            free(contacts->spare);
+            contacts->spare = array_allocate_rows(capacity, sizeof(double));
+        }
+        carry_lane(contacts, l);
+    }
+    if (grow) {
+        free(contacts->spare);
+        contacts->spare = array_allocate_rows(capacity, sizeof(double));
+    }
+    contacts->history_capacity = (int)capacity;
+}
+
+static void reserve_rows(struct contact_set *contacts, int n)
+{
+    if (n <= contacts->row_capacity)
+        return;
+    const size_t capacity = array_capacity((size_t)contacts->row_capacity, (size_t)n);
+    free(contacts->row_begin);
+    free(contacts->row_end);
+    contacts->row_begin = array_allocate_rows(capacity, sizeof(int));
+    contacts->row_end = array_allocate_rows(capacity, sizeof(int));
+    contacts->row_capacity = (int)capacity;
+}
+
+static void forget_sources(struct contact_set *contacts)
+{
+    if (contacts->now.n > contacts->source_capacity) {
+        free(contacts->source);
+        contacts->source_capacity = contacts->now.n + contacts->now.n / 8;
+        contacts->source =
+            array_allocate_rows((size_t)contacts->source_capacity, sizeof *contacts->source);
+    }
+    for (int k = 0; k < contacts->now.n; k++)
+        contacts->source[k] = -1;
 }
 
 void contact_set_prune(struct contact_set *contacts, const struct candidates *candidates,
                        struct spheres *spheres, double base, double horizon, bool keep_all,
                        const int *moved)
 {
-    const struct contact_list swap = contacts->before;
-    contacts->before = contacts->now;
-    contacts->now = swap;
-    list_reserve_pairs(&contacts->now, candidates->n);
-    if (spheres->n_all > contacts->row_capacity) {
-        const size_t capacity =
-            array_capacity((size_t)contacts->row_capacity, (size_t)spheres->n_all);
-        free(contacts->row_begin);
-        free(contacts->row_end);
-        contacts->row_begin = array_allocate_rows(capacity, sizeof(int));
-        contacts->row_end = array_allocate_rows(capacity, sizeof(int));
-        contacts->row_capacity = (int)capacity;
-    }
     double *inner = array_allocate((size_t)spheres->n_all, sizeof *inner);
+    exchange_pairs(contacts);
+    reserve_rows(contacts, spheres->n_all);
     choose_allowances(spheres, inner, base, horizon, keep_all);
+    reserve_pairs(contacts, 0);
     select_pairs(contacts, candidates, spheres, inner, keep_all);
-    list_pad(contacts, spheres->n_all);
-    carry_history(contacts, candidates, spheres, moved);
+    pad_pairs(contacts, spheres->n_all);
+    forget_sources(contacts);
+    if (moved == NULL && !spheres->periodic.any)
+        match_rows(contacts);
+    else
+        find_sources(contacts, candidates, spheres, moved);
+    carry_history(contacts);
     free(inner);
 }
 
@@ -318,5 +395,6 @@ void contact_set_restore(struct contact_set *contacts, const struct candidates *
                          const struct spheres *spheres, const struct contact_record *record,
                          int first, int second)
 {
-    place_history(contacts, candidates, spheres, first, second, record->history);
+    place_memory(contacts, candidates, spheres, first, second,
+                 (struct memory){.history = record->history});
 }

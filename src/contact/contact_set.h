@@ -40,19 +40,28 @@ struct spheres;
 
 /* An inner list with history. */
 struct contact_list {
-    int n;        /* entries */
-    int n_padded; /* a multiple of CONTACT_PAD; the padding pairs the two dummies */
-    int capacity; /* of first and second: any candidate may be listed */
-    int history_capacity;
+    int n;               /* entries */
+    int n_padded;        /* a multiple of CONTACT_PAD; the padding pairs the two dummies */
     int *first, *second; /* storage indices, CONTACT_AHEAD more of them than n_padded */
     double *history[CONTACT_LANES]; /* NULL where the job needs no such lane */
+};
+
+/* Pairs of a list. */
+struct contact_pairs {
+    int n, capacity;
+    int *first, *second;
 };
 
 struct contact_set {
     bool full, ledger; /* which lanes there are */
     struct contact_list now;
-    struct contact_list before; /* the list that `now` replaced, and room for the next one */
-    int *row_begin, *row_end;   /* entries of `now` whose first is sphere i */
+    int pair_capacity, history_capacity; /* of `now` and of the lane to spare */
+    struct contact_pairs before;         /* pairs of the list that `now` replaced */
+    int *source; /* of an entry: where it was before, times 2, plus 1 where it was the other way
+                    round; -1: nowhere */
+    int source_capacity;
+    double *spare;            /* a lane that the next one is made in */
+    int *row_begin, *row_end; /* entries of `now` whose first is sphere i */
     int row_capacity;
 };
 
