@@ -5,6 +5,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
 #include "base/report.h"
@@ -122,7 +123,21 @@ static double distance_to(const struct region_surface *surface, struct vec3 x, d
     return near;
 }
 
-static void check_body(const struct scene *scene, int group, const struct body *body,
+/* "body 'bin'"; of a drawing also its file and its width, which may be in other units.  The
+ * caller frees it. */
+static char *name_body(const struct job_body *asked, const struct body *body)
+{
+    if (asked->file == NULL)
+        return array_format("body '%s'", body->name);
+    const struct mesh_survey survey = mesh_survey(&body->mesh);
+    const struct vec3 size = vec3_sub(survey.high, survey.low);
+    const double wide = size.x > size.y ? size.x : size.y;
+    const char *slash = strrchr(asked->file, '/');
+    return array_format("body '%s', %s, %.3g m wide,", body->name,
+                        slash != NULL ? slash + 1 : asked->file, size.z > wide ? size.z : wide);
+}
+
+static void check_body(const struct scene *scene, int group, int b, const struct body *body,
                        const struct region_surface *surface, struct mistakes *mistakes)
 {
     const double limit = scene->job->watch.overlap;
@@ -138,12 +153,13 @@ static void check_body(const struct scene *scene, int group, const struct body *
         return;
     const struct packing_sphere sphere = packing_get(packing, first);
     const struct vec3 x = periodic_settled(&scene->periodic, sphere.position);
-    char *what =
-        array_format("overlaps body '%s' by %.3g of a radius, more than "
-                     "watch.overlap = %.3g, the first of %lld that do; places clear of "
-                     "bodies are expected",
-                     body->name, 1.0 - distance_to(surface, x, sphere.radius) / sphere.radius,
-                     limit, (long long)n);
+    const double distance = distance_to(surface, x, sphere.radius);
+    char *name = name_body(&scene->job->bodies[b], body);
+    char *what = array_format(
+        "overlaps %s by %.3g of a radius, more than watch.overlap = %.3g, the first of %lld "
+        "that do; places clear of bodies are expected",
+        name, 1.0 - distance / sphere.radius, limit, (long long)n);
+    free(name);
     complain(scene, (struct owner){group, first}, mistakes, what);
     free(what);
 }
@@ -158,7 +174,7 @@ static void check_bodies(const struct scene *scene, const struct bodies *bodies,
         struct region_surface *surface =
             region_surface_build(&body->mesh, body->mesh.reference);
         for (int g = 0; g < scene->packings->n; g++)
-            check_body(scene, g, body, surface, mistakes);
+            check_body(scene, g, b, body, surface, mistakes);
         region_surface_destroy(surface);
     }
 }

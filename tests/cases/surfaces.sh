@@ -96,6 +96,8 @@ result "and how to join them"
 warned "a border" "body 'plate', plate.msh: 4 open edges, the first at "
 sed -i 's/scale: 0.001, //' round.yaml
 sed -i 's/time: {end: 0.5/domain: {min: [-2000, -2000, -2000], max: [2000, 2000, 2000]}\ntime: {end: 0.5/' round.yaml
+refused "a file in mm among the spheres" "overlaps body 'wedge', wedge.stl, 360 m wide, by "
+sed -i 's/move: \[-0.5, 0.1, -0.2\]/move: [-0.5, 0.1, -900]/' round.yaml
 warned "a file in mm" "body 'wedge', wedge.stl: is 360 m wide, 7.2e+03 radii"
-sed -i 's/domain: .*/domain: {min: [-2000, -2000, -2000], max: [2000, 2000, -1000], leavers: stop}/' round.yaml
+sed -i 's/domain: .*/domain: {min: [-2000, -2000, -0.3], max: [2000, 2000, 2000], leavers: stop}/' round.yaml
 warned "a body outside the domain" "body 'plate' lies outside the domain"
