@@ -29,13 +29,14 @@ void *array_allocate(size_t n, size_t size)
 void *array_allocate_rows(size_t n, size_t size)
 {
     const size_t bytes = checked_bytes(n, size);
-    const size_t alignment = bytes >= HUGE_PAGE ? HUGE_PAGE : CACHE_LINE;
-    const size_t padded = (bytes / alignment + 1) * alignment;
-    void *memory = aligned_alloc(alignment, padded);
-    CHECK(memory != NULL, "out of memory: %zu bytes asked for", padded);
+    void *memory = NULL;
+    const int error = posix_memalign(&memory, bytes >= HUGE_PAGE ? HUGE_PAGE : CACHE_LINE,
+                                     bytes > 0 ? bytes : CACHE_LINE);
+    CHECK(error == 0, "out of memory: %zu bytes asked for", bytes);
+    /* Only what fills huge pages: another one for the rest would be mostly empty. */
     if (bytes >= HUGE_PAGE)
-        (void)madvise(memory, padded, MADV_HUGEPAGE); /* advice: it may fail */
-    memset(memory, 0, padded);
+        (void)madvise(memory, bytes / HUGE_PAGE * HUGE_PAGE, MADV_HUGEPAGE); /* it may fail */
+    memset(memory, 0, bytes);
     return memory;
 }
 

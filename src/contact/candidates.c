@@ -10,18 +10,27 @@
 const double candidates_level_bound[CANDIDATES_LEVELS] = {1.3,  2.6,  5.2,  10.4,
                                                           20.8, 41.6, 83.2, 1e300};
 
+/* Gives back what only a search needs. */
+static void forget_search(struct candidates *candidates)
+{
+    free(candidates->found_low);
+    free(candidates->found_high);
+    free(candidates->members);
+    free(candidates->tags);
+    candidates->found_low = candidates->found_high = NULL;
+    candidates->members = candidates->tags = NULL;
+    candidates->found_capacity = 0;
+    for (int l = 0; l < CANDIDATES_LEVELS; l++)
+        cell_grid_clear(&candidates->grid[l]);
+}
+
 void candidates_clear(struct candidates *candidates)
 {
-    free(candidates->first);
     free(candidates->second);
     free(candidates->place);
     free(candidates->at);
     free(candidates->row_end);
-    free(candidates->found_low);
-    free(candidates->found_high);
-    free(candidates->points);
-    for (int l = 0; l < CANDIDATES_LEVELS; l++)
-        cell_grid_clear(&candidates->grid[l]);
+    forget_search(candidates);
     *candidates = (struct candidates){0};
 }
 
@@ -35,11 +44,9 @@ static void number_places(struct candidates *candidates, const struct spheres *s
         free(candidates->place);
         free(candidates->at);
         free(candidates->row_end);
-        free(candidates->points);
         candidates->place = array_allocate_rows((size_t)capacity, sizeof(int));
         candidates->at = array_allocate_rows((size_t)capacity, sizeof(int));
         candidates->row_end = array_allocate_rows((size_t)capacity, sizeof(int));
-        candidates->points = array_allocate_rows((size_t)capacity, sizeof(struct cell_point));
         candidates->place_capacity = capacity;
     }
     int owned = 0, ghost = n_owned;
@@ -148,6 +155,8 @@ static int scan_across(struct candidates *candidates, const struct cell_grid *hi
 static void fill_levels(struct candidates *candidates, const struct spheres *spheres)
 {
     double least = 1e300;
+    candidates->members = array_allocate_rows((size_t)spheres->n_all, sizeof(int));
+    candidates->tags = array_allocate_rows((size_t)spheres->n_all, sizeof(int));
     for (int i = 0; i < spheres->n_all; i++) {
         const double reach = sphere_radius(spheres, i) + spheres->allowance[i];
         least = reach < least ? reach : least;
@@ -162,14 +171,13 @@ static void fill_levels(struct candidates *candidates, const struct spheres *sph
             const double reach = sphere_radius(spheres, i) + spheres->allowance[i];
             if (!(reach >= bound_before && reach < bound))
                 continue;
-            const double *x = sphere_position(spheres, i);
-            candidates->points[n++] = (struct cell_point){
-                x[0], x[1], x[2], reach, tag_of(candidates->place[i], i >= spheres->n_owned)};
+            candidates->members[n] = i;
+            candidates->tags[n++] = tag_of(candidates->place[i], i >= spheres->n_owned);
             reach_max = reach > reach_max ? reach : reach_max;
         }
         n_filed += n;
         /* A little wider than needed, so that rounding in the cell index loses nothing. */
-        cell_grid_fill(&candidates->grid[l], n, candidates->points,
+        cell_grid_fill(&candidates->grid[l], spheres, n, candidates->members, candidates->tags,
                        n > 0 ? 2.0000001 * reach_max : 1.0);
         bound_before = bound;
     }
@@ -223,7 +231,6 @@ static void sort_found(struct candidates *candidates, int n_found, int n_places)
             for (; slot > begin && candidates->second[slot - 1] > partner; slot--)
                 candidates->second[slot] = candidates->second[slot - 1];
             candidates->second[slot] = partner;
-            candidates->first[k] = candidates->at[p];
         }
         begin = row_end[p];
     }
@@ -236,15 +243,15 @@ void candidates_search(struct candidates *candidates, const struct spheres *sphe
                        bool all_pairs)
 {
     number_places(candidates, spheres);
+    reserve_found(candidates, candidates->n + candidates->n / 16); /* about as many as last */
     const int n_found =
         all_pairs ? find_all_pairs(candidates, spheres) : find_by_grids(candidates, spheres);
     if (n_found > candidates->capacity) {
         candidates->capacity =
             (int)array_capacity((size_t)candidates->capacity, (size_t)n_found);
-        free(candidates->first);
         free(candidates->second);
-        candidates->first = array_allocate_rows((size_t)candidates->capacity, sizeof(int));
         candidates->second = array_allocate_rows((size_t)candidates->capacity, sizeof(int));
     }
     sort_found(candidates, n_found, spheres->n_all);
+    forget_search(candidates);
 }

@@ -26,15 +26,16 @@ extern const double candidates_level_bound[CANDIDATES_LEVELS];
 
 struct candidates {
     int n, capacity;
-    int *first, *second; /* storage indices, sorted by the places of first and second */
-    int *place;          /* place in canonical order of a storage index */
-    int *at;             /* storage index at a place */
-    int *row_end;        /* end in the lists of the row of a place */
+    int *second;  /* storage indices, row by row, sorted by their places */
+    int *place;   /* place in canonical order of a storage index */
+    int *at;      /* storage index at a place */
+    int *row_end; /* end in the lists of the row of a place */
     int place_capacity;
-    /* scratch */
+    /* During a search: */
     int found_capacity;
     int *found_low, *found_high; /* places, unsorted */
-    struct cell_point *points;
+    int *members;                /* storage indices of a level's spheres */
+    int *tags;                   /* theirs, in the grid */
     struct cell_grid grid[CANDIDATES_LEVELS];
 };
 

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "model/sphere.h"
 
 void cell_grid_clear(struct cell_grid *grid)
 {
@@ -73,28 +74,34 @@ int cell_grid_along(const struct cell_grid *grid, int k, double x)
     return cell < (double)grid->size[k] - 1.0 ? (int)cell : grid->size[k] - 1;
 }
 
-void cell_grid_fill(struct cell_grid *grid, int n, const struct cell_point *points,
-                    double width)
+static double reach_of(const struct spheres *spheres, int i)
+{
+    return sphere_radius(spheres, i) + spheres->allowance[i];
+}
+
+void cell_grid_fill(struct cell_grid *grid, const struct spheres *spheres, int n,
+                    const int *members, const int *tags, double width)
 {
     reserve(grid, n);
     grid->n = n;
     double low[3] = {0.0, 0.0, 0.0}, high[3] = {0.0, 0.0, 0.0};
     grid->reach_max = 0.0;
     for (int p = 0; p < n; p++) {
-        const double x[3] = {points[p].x, points[p].y, points[p].z};
+        const double *x = sphere_position(spheres, members[p]);
+        const double reach = reach_of(spheres, members[p]);
         for (int k = 0; k < 3; k++) {
             low[k] = p > 0 && low[k] < x[k] ? low[k] : x[k];
             high[k] = p > 0 && high[k] > x[k] ? high[k] : x[k];
         }
-        grid->reach_max = points[p].reach > grid->reach_max ? points[p].reach : grid->reach_max;
+        grid->reach_max = reach > grid->reach_max ? reach : grid->reach_max;
     }
     choose_cells(grid, low, high, width);
     int *begin = grid->begin;
     memset(begin, 0, ((size_t)grid->n_cells + 1) * sizeof *begin);
     for (int p = 0; p < n; p++) {
-        const int cx = cell_grid_along(grid, 0, points[p].x),
-                  cy = cell_grid_along(grid, 1, points[p].y);
-        const int cz = cell_grid_along(grid, 2, points[p].z);
+        const double *x = sphere_position(spheres, members[p]);
+        const int cx = cell_grid_along(grid, 0, x[0]), cy = cell_grid_along(grid, 1, x[1]);
+        const int cz = cell_grid_along(grid, 2, x[2]);
         grid->scratch[p] = (cz * grid->size[1] + cy) * grid->size[0] + cx;
         begin[grid->scratch[p]]++;
     }
@@ -105,11 +112,12 @@ void cell_grid_fill(struct cell_grid *grid, int n, const struct cell_point *poin
     }
     for (int p = 0; p < n; p++) {
         const int place = begin[grid->scratch[p]]++;
-        grid->x[place] = points[p].x;
-        grid->y[place] = points[p].y;
-        grid->z[place] = points[p].z;
-        grid->reach[place] = points[p].reach;
-        grid->tag[place] = points[p].tag;
+        const double *x = sphere_position(spheres, members[p]);
+        grid->x[place] = x[0];
+        grid->y[place] = x[1];
+        grid->z[place] = x[2];
+        grid->reach[place] = reach_of(spheres, members[p]);
+        grid->tag[place] = tags[p];
         grid->cell[place] = grid->scratch[p];
     }
     memmove(begin + 1, begin, (size_t)grid->n_cells * sizeof *begin);

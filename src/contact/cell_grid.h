@@ -1,12 +1,14 @@
 /*
- * A grid of cells over points with a reach: the ground of global search.
+ * A grid of cells over spheres with a reach: the ground of global search.
  *
- * Points are copied in the order of their cells, row by row, so that a row of neighbouring
+ * Places are copied in the order of their cells, row by row, so that a row of neighbouring
  * cells is one contiguous run.  A frame of empty cells surrounds the grid: neighbours need no
  * bounds checks.
  */
 #ifndef TREMIE_CONTACT_CELL_GRID_H
 #define TREMIE_CONTACT_CELL_GRID_H
+
+struct spheres;
 
 struct cell_grid {
     int n, capacity;
@@ -23,17 +25,11 @@ struct cell_grid {
     double reach_max; /* [m] */
 };
 
-/* One point to be filed. */
-struct cell_point {
-    double x, y, z, reach;
-    int tag;
-};
-
 void cell_grid_clear(struct cell_grid *grid);
-/* Files n points in cells at least `width` wide (wider where that would give many more cells
- * than points). */
-void cell_grid_fill(struct cell_grid *grid, int n, const struct cell_point *points,
-                    double width);
+/* Files n spheres, members[] by storage index, with radius and allowance as reach, in cells at
+ * least `width` wide (wider where that would give many more cells than spheres). */
+void cell_grid_fill(struct cell_grid *grid, const struct spheres *spheres, int n,
+                    const int *members, const int *tags, double width);
 /* Index of the cell (within the frame) along direction k; outside the grid it is the
  * frame's. */
 int cell_grid_along(const struct cell_grid *grid, int k, double x);

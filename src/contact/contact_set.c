@@ -30,9 +30,6 @@ void contact_set_clear(struct contact_set *contacts)
     free(contacts->now.second);
     for (int l = 0; l < CONTACT_LANES; l++)
         free(contacts->now.history[l]);
-    free(contacts->before.first);
-    free(contacts->before.second);
-    free(contacts->source);
     free(contacts->spare);
     free(contacts->row_begin);
     free(contacts->row_end);
@@ -54,15 +51,23 @@ static void reserve_pairs(struct contact_set *contacts, int n)
     contacts->pair_capacity = (int)capacity;
 }
 
-/* The present pairs become those before; what they replace is room for the next. */
-static void exchange_pairs(struct contact_set *contacts)
+/* The present pairs become those before, until the list is made. */
+static void set_pairs_aside(struct contact_set *contacts)
 {
-    const struct contact_pairs old = contacts->before;
-    contacts->before = (struct contact_pairs){contacts->now.n, contacts->pair_capacity,
-                                              contacts->now.first, contacts->now.second};
-    contacts->now.first = old.first;
-    contacts->now.second = old.second;
-    contacts->pair_capacity = old.capacity;
+    struct contact_list *list = &contacts->now;
+    contacts->before = (struct contact_pairs){list->n, list->first, list->second};
+    list->first = list->second = NULL;
+    contacts->pair_capacity = 0;
+    reserve_pairs(contacts, list->n);
+}
+
+static void forget_before(struct contact_set *contacts)
+{
+    free(contacts->before.first);
+    free(contacts->before.second);
+    free(contacts->source);
+    contacts->before = (struct contact_pairs){0};
+    contacts->source = NULL;
 }
 
 static void pad_pairs(struct contact_set *contacts, int dummy)
@@ -331,14 +336,9 @@ static void reserve_rows(struct contact_set *contacts, int n)
     contacts->row_capacity = (int)capacity;
 }
 
-static void forget_sources(struct contact_set *contacts)
+static void begin_sources(struct contact_set *contacts)
 {
-    if (contacts->now.n > contacts->source_capacity) {
-        free(contacts->source);
-        contacts->source_capacity = contacts->now.n + contacts->now.n / 8;
-        contacts->source =
-            array_allocate_rows((size_t)contacts->source_capacity, sizeof *contacts->source);
-    }
+    contacts->source = array_allocate_rows((size_t)contacts->now.n, sizeof *contacts->source);
     for (int k = 0; k < contacts->now.n; k++)
         contacts->source[k] = -1;
 }
@@ -348,18 +348,18 @@ void contact_set_prune(struct contact_set *contacts, const struct candidates *ca
                        const int *moved)
 {
     double *inner = array_allocate((size_t)spheres->n_all, sizeof *inner);
-    exchange_pairs(contacts);
+    set_pairs_aside(contacts);
     reserve_rows(contacts, spheres->n_all);
     choose_allowances(spheres, inner, base, horizon, keep_all);
-    reserve_pairs(contacts, 0);
     select_pairs(contacts, candidates, spheres, inner, keep_all);
     pad_pairs(contacts, spheres->n_all);
-    forget_sources(contacts);
+    begin_sources(contacts);
     if (moved == NULL && !spheres->periodic.any)
         match_rows(contacts);
     else
         find_sources(contacts, candidates, spheres, moved);
     carry_history(contacts);
+    forget_before(contacts);
     free(inner);
 }
 

@@ -48,7 +48,7 @@ struct contact_list {
 
 /* Pairs of a list. */
 struct contact_pairs {
-    int n, capacity;
+    int n;
     int *first, *second;
 };
 
@@ -56,13 +56,13 @@ struct contact_set {
     bool full, ledger; /* which lanes there are */
     struct contact_list now;
     int pair_capacity, history_capacity; /* of `now` and of the lane to spare */
-    struct contact_pairs before;         /* pairs of the list that `now` replaced */
+    double *spare;                       /* a lane that the next one is made in */
+    int *row_begin, *row_end;            /* entries of `now` whose first is sphere i */
+    int row_capacity;
+    /* While `now` is made: */
+    struct contact_pairs before; /* pairs of the list that it replaces */
     int *source; /* of an entry: where it was before, times 2, plus 1 where it was the other way
                     round; -1: nowhere */
-    int source_capacity;
-    double *spare;            /* a lane that the next one is made in */
-    int *row_begin, *row_end; /* entries of `now` whose first is sphere i */
-    int row_capacity;
 };
 
 /* A touching contact by ids, first_id < second_id, history oriented from first to second: what

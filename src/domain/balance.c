@@ -29,22 +29,33 @@ bool balance_is_lost(struct balance *balance, const struct comm *comm, double li
     return balance->imbalance > limit;
 }
 
+static void add_cost(int64_t *weights, const struct spheres *spheres, int i, int j)
+{
+    if (i < spheres->n_owned)
+        weights[i] += COST_PAIR;
+    if (j < spheres->n_owned)
+        weights[j] += COST_PAIR;
+}
+
+static void add_candidates(int64_t *weights, const struct spheres *spheres,
+                           const struct candidates *candidates)
+{
+    for (int place = 0, k = 0; k < candidates->n; place++)
+        for (; k < candidates->row_end[place]; k++)
+            add_cost(weights, spheres, candidates->at[place], candidates->second[k]);
+}
+
 void balance_weights(int64_t *weights, const struct spheres *spheres, enum job_weights kind,
                      const struct contact_list *contacts, const struct candidates *candidates,
                      const struct facet_contacts *facets)
 {
-    const bool by_candidates = kind == JOB_WEIGHTS_CANDIDATES;
-    const int n = by_candidates ? candidates->n : contacts->n;
-    const int *first = by_candidates ? candidates->first : contacts->first;
-    const int *second = by_candidates ? candidates->second : contacts->second;
     for (int i = 0; i < spheres->n_owned; i++)
         weights[i] = COST_SPHERE;
-    for (int k = 0; k < n; k++) {
-        if (first[k] < spheres->n_owned)
-            weights[first[k]] += COST_PAIR;
-        if (second[k] < spheres->n_owned)
-            weights[second[k]] += COST_PAIR;
-    }
+    if (kind == JOB_WEIGHTS_CANDIDATES)
+        add_candidates(weights, spheres, candidates);
+    else
+        for (int k = 0; k < contacts->n; k++)
+            add_cost(weights, spheres, contacts->first[k], contacts->second[k]);
     for (int k = 0; k < facets->n; k++)
         weights[facets->list[k].sphere] += COST_FACET;
 }

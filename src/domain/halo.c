@@ -43,9 +43,6 @@ void halo_clear(struct halo *halo)
     free(halo->peers);
     free(halo->requests);
     free(halo->all_boxes);
-    free(halo->keys);
-    free(halo->key_scratch);
-    free(halo->field_scratch);
     *halo = (struct halo){0};
 }
 
@@ -278,37 +275,22 @@ static void receive_ghosts(struct halo *halo, struct spheres *spheres)
 static void sort_ghosts(struct halo *halo, struct spheres *spheres)
 {
     const int n_owned = spheres->n_owned, n = spheres->n_all - n_owned;
-    if (n > halo->key_capacity) {
-        const size_t capacity = array_capacity((size_t)halo->key_capacity, (size_t)n);
-        free(halo->keys);
-        free(halo->key_scratch);
-        free(halo->field_scratch);
-        halo->keys = array_allocate(capacity, sizeof *halo->keys);
-        halo->key_scratch = array_allocate(capacity, sizeof *halo->key_scratch);
-        halo->field_scratch = array_allocate(capacity, 3 * sizeof(double));
-        halo->key_capacity = (int)capacity;
+    struct order_key *keys = array_allocate((size_t)n, sizeof *keys);
+    int *went = array_allocate((size_t)n, sizeof *went);
+    for (int g = 0; g < n; g++) {
+        const int i = n_owned + g;
+        keys[g] = (struct order_key){spheres->order_cell[i], spheres->id[i], i};
     }
+    order_arrange(spheres, n_owned, keys, n);
     for (int g = 0; g < n; g++)
-        halo->keys[g] =
-            (struct order_key){spheres->order_cell[n_owned + g], spheres->id[n_owned + g], g};
-    order_sort(halo->keys, n, halo->key_scratch);
-    for (int f = 0; f < SPHERE_N_FIELDS; f++) {
-        const struct field_view view = sphere_view(spheres, f);
-        const size_t size = field_size(&sphere_fields[f]);
-        for (int g = 0; g < n; g++)
-            memcpy(halo->field_scratch + (size_t)g * size,
-                   field_at(&view, n_owned + halo->keys[g].index), size);
-        for (int g = 0; g < n; g++)
-            memcpy(field_at(&view, n_owned + g), halo->field_scratch + (size_t)g * size, size);
-    }
-    int *went = (int *)(void *)halo->field_scratch;
-    for (int g = 0; g < n; g++)
-        went[halo->keys[g].index] = n_owned + g;
+        went[keys[g].index - n_owned] = n_owned + g;
     for (int p = 0; p < halo->n_peers; p++) {
         struct halo_peer *peer = &halo->peers[p];
         for (int k = 0; k < peer->n_receive; k++)
             peer->receive[k] = went[peer->receive[k] - n_owned];
     }
+    free(went);
+    free(keys);
 }
 
 static void count_classes(struct halo *halo, const struct comm *comm, const struct boxes *boxes,

@@ -50,9 +50,6 @@ struct halo {
     struct comm_mail mail;
     void *all_boxes; /* scratch: every rank's boxes of centres */
     int n_internal, n_interfacial;
-    int key_capacity;
-    struct order_key *keys, *key_scratch;
-    unsigned char *field_scratch;
 };
 
 void halo_init(struct halo *halo, const struct comm *comm);

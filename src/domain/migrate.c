@@ -21,16 +21,9 @@ void migrate_init(struct migrate *migrate, const struct comm *comm)
 void migrate_clear(struct migrate *migrate)
 {
     comm_mail_clear(&migrate->mail);
-    lookup_clear(&migrate->lookup);
     free(migrate->contacts);
     free(migrate->facets);
-    free(migrate->id_before);
-    free(migrate->moved);
-    free(migrate->owner);
-    free(migrate->leaves);
-    free(migrate->keys);
-    free(migrate->key_scratch);
-    free(migrate->field_scratch);
+    migrate_forget(migrate);
     *migrate = (struct migrate){0};
 }
 
@@ -48,20 +41,6 @@ static void reserve(struct migrate *migrate, int n)
     migrate->owner = array_allocate(capacity, sizeof *migrate->owner);
     migrate->leaves = array_allocate(capacity, sizeof *migrate->leaves);
     migrate->before_capacity = (int)capacity;
-}
-
-static void reserve_keys(struct migrate *migrate, int n)
-{
-    if (n <= migrate->key_capacity)
-        return;
-    const size_t capacity = array_capacity((size_t)migrate->key_capacity, (size_t)n);
-    free(migrate->keys);
-    free(migrate->key_scratch);
-    free(migrate->field_scratch);
-    migrate->keys = array_allocate(capacity, sizeof *migrate->keys);
-    migrate->key_scratch = array_allocate(capacity, sizeof *migrate->key_scratch);
-    migrate->field_scratch = array_allocate(capacity, 3 * sizeof(double));
-    migrate->key_capacity = (int)capacity;
 }
 
 /* Finds everybody's new owner; returns how many leave this rank. */
@@ -166,36 +145,22 @@ static int unpack(struct migrate *migrate, struct spheres *spheres, int n)
     return n;
 }
 
-/* Gives every field the order of the keys. */
-static void permute(struct migrate *migrate, struct spheres *spheres, int n)
-{
-    for (int f = 0; f < SPHERE_N_FIELDS; f++) {
-        const struct field_view view = sphere_view(spheres, f);
-        const size_t size = field_size(&sphere_fields[f]);
-        for (int k = 0; k < n; k++)
-            memcpy(migrate->field_scratch + (size_t)k * size,
-                   field_at(&view, migrate->keys[k].index), size);
-        for (int k = 0; k < n; k++)
-            memcpy(field_at(&view, k), migrate->field_scratch + (size_t)k * size, size);
-    }
-}
-
 /* Sorts who stays (old indices below n_owned) and who arrived (from n_before on). */
 static void sort_owned(struct migrate *migrate, struct spheres *spheres, int n_with_arrivals)
 {
-    reserve_keys(migrate, n_with_arrivals);
+    struct order_key *keys = array_allocate((size_t)n_with_arrivals, sizeof *keys);
     int n = 0;
     for (int i = 0; i < n_with_arrivals; i++) {
         const bool here = i < spheres->n_owned ? !migrate->leaves[i] : i >= migrate->n_before;
         if (here)
-            migrate->keys[n++] = (struct order_key){spheres->order_cell[i], spheres->id[i], i};
+            keys[n++] = (struct order_key){spheres->order_cell[i], spheres->id[i], i};
     }
-    order_sort(migrate->keys, n, migrate->key_scratch);
-    permute(migrate, spheres, n);
+    order_arrange(spheres, 0, keys, n);
     for (int k = 0; k < n; k++) {
-        if (migrate->keys[k].index < migrate->n_before)
-            migrate->moved[migrate->keys[k].index] = k;
+        if (keys[k].index < migrate->n_before)
+            migrate->moved[keys[k].index] = k;
     }
+    free(keys);
     spheres->n_owned = n;
 }
 
@@ -246,4 +211,17 @@ void migrate_find_moved(struct migrate *migrate, const struct spheres *spheres)
         if (migrate->moved[i] < 0)
             migrate->moved[i] = lookup_find(&migrate->lookup, migrate->id_before[i]);
     }
+}
+
+void migrate_forget(struct migrate *migrate)
+{
+    lookup_clear(&migrate->lookup);
+    free(migrate->id_before);
+    free(migrate->moved);
+    free(migrate->owner);
+    free(migrate->leaves);
+    migrate->id_before = NULL;
+    migrate->moved = migrate->owner = NULL;
+    migrate->leaves = NULL;
+    migrate->before_capacity = 0;
 }

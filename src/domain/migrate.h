@@ -41,10 +41,6 @@ struct migrate {
     bool owned_moved; /* storage indices of owned spheres changed on this rank */
     int n_born;       /* spheres that the caller has put behind the ghosts: they stay here */
     int64_t n_left;   /* spheres that left this rank in the last migration */
-    /* scratch */
-    int key_capacity;
-    struct order_key *keys, *key_scratch;
-    unsigned char *field_scratch;
 };
 
 void migrate_init(struct migrate *migrate, const struct comm *comm);
@@ -65,5 +61,8 @@ void migrate_spheres(struct migrate *migrate, const struct comm *comm,
 /* Completes moved[] once the new ghosts are here; the lookup then finds all spheres here.
  * Local. */
 void migrate_find_moved(struct migrate *migrate, const struct spheres *spheres);
+/* Gives back the memory of what only matters during a redistribution: lookup, moved[] and what
+ * was before.  Local. */
+void migrate_forget(struct migrate *migrate);
 
 #endif

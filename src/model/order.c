@@ -1,9 +1,12 @@
 /* See order.h. */
 #include "model/order.h"
 
+#include <stdlib.h>
 #include <string.h>
 
+#include "base/array.h"
 #include "base/comm.h"
+#include "base/report.h"
 #include "model/sphere.h"
 
 enum { CELL_BITS = 21 };
@@ -80,4 +83,21 @@ void order_sort(struct order_key *keys, int n, struct order_key *scratch)
     }
     if (from != keys)
         memcpy(keys, from, (size_t)n * sizeof *keys);
+}
+
+void order_arrange(struct spheres *spheres, int begin, struct order_key *keys, int n)
+{
+    struct order_key *scratch = array_allocate((size_t)n, sizeof *scratch);
+    unsigned char *values = (unsigned char *)scratch;
+    order_sort(keys, n, scratch);
+    for (int f = 0; f < SPHERE_N_FIELDS; f++) {
+        const struct field_view view = sphere_view(spheres, f);
+        const size_t size = field_size(&sphere_fields[f]);
+        CHECK(size <= sizeof *scratch, "field %s has %zu bytes", sphere_fields[f].name, size);
+        for (int k = 0; k < n; k++)
+            memcpy(values + (size_t)k * size, field_at(&view, keys[k].index), size);
+        for (int k = 0; k < n; k++)
+            memcpy(field_at(&view, begin + k), values + (size_t)k * size, size);
+    }
+    free(scratch);
 }

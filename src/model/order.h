@@ -36,4 +36,8 @@ void order_renew(struct spheres *spheres, const struct comm *comm);
  * place, as after an ordinary migration.  Local. */
 void order_sort(struct order_key *keys, int n, struct order_key *scratch);
 
+/* Sorts n keys and brings the spheres from storage index `begin` on into their order, field by
+ * field: keys[k].index is where sphere begin + k was.  Local. */
+void order_arrange(struct spheres *spheres, int begin, struct order_key *keys, int n);
+
 #endif

@@ -245,6 +245,7 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
     update_subdomains(sim, moves, renew, removed, &sim->contacts);
     runtime_end(&sim->runtime, RUNTIME_REDISTRIBUTE);
     search(sim, moves ? sim->migrate.moved : NULL, removed != NULL);
+    migrate_forget(&sim->migrate);
     runtime_end(&sim->runtime, RUNTIME_SEARCH);
 }
 
@@ -260,6 +261,7 @@ void redistribute_first(struct simulation *sim)
     boxes_update(&sim->boxes);
     update_subdomains(sim, true, true, NULL, NULL);
     search(sim, sim->migrate.moved, false);
+    migrate_forget(&sim->migrate);
 }
 
 void redistribute_spend(struct simulation *sim, const double spent[2])

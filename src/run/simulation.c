@@ -154,12 +154,16 @@ static void add_groups(struct simulation *sim, const struct packing *before)
     CHECK(packings_open(&packings, sim->job, &sim->bodies, before, sphere_file_read, &mistakes),
           "a packing was there and has gone: %s", mistakes.list[0].text);
     mistakes_clear(&mistakes);
+    int64_t n_here = sim->spheres.n_owned;
+    for (int g = 0; g < packings.n; g++)
+        n_here +=
+            packings.groups[g].n * (rank + 1) / n_ranks - packings.groups[g].n * rank / n_ranks;
+    spheres_reserve(&sim->spheres, (int)n_here);
     for (int g = 0; g < packings.n; g++) {
         const int64_t n = packings.groups[g].n;
         for (int64_t k = n * rank / n_ranks; k < n * (rank + 1) / n_ranks; k++) {
             const struct packing_sphere sphere = packing_get(&packings.groups[g], k);
             const int i = sim->spheres.n_owned++;
-            spheres_reserve(&sim->spheres, i + 1);
             simulation_set_sphere(sim, i, sim->next_id + k, g, &sphere);
         }
         sim->next_id += n;
