@@ -138,10 +138,11 @@ void comm_mail_exchange(struct comm_mail *mail, const struct comm *comm)
         in->n = (size_t)n_in[q];
         in->read = 0;
         CHECK(in->n <= INT_MAX && mail->out[q].n <= INT_MAX, "a message of over 2 GiB");
+        if (q == comm->rank || in->n == 0)
+            continue;
         ARRAY_GROW(in->bytes, in->n, in->capacity);
-        if (q != comm->rank && in->n > 0)
-            COMM_CHECK(MPI_Irecv(in->bytes, (int)in->n, MPI_BYTE, q, 1, comm->mpi,
-                                 &requests[n_requests++]));
+        COMM_CHECK(MPI_Irecv(in->bytes, (int)in->n, MPI_BYTE, q, 1, comm->mpi,
+                             &requests[n_requests++]));
     }
     for (int k = 1; k < n_ranks; k++) {
         const int q = (comm->rank + k) % n_ranks;
@@ -150,8 +151,10 @@ void comm_mail_exchange(struct comm_mail *mail, const struct comm *comm)
             COMM_CHECK(MPI_Isend(out->bytes, (int)out->n, MPI_BYTE, q, 1, comm->mpi,
                                  &requests[n_requests++]));
     }
-    if (mail->in[comm->rank].n > 0)
-        memcpy(mail->in[comm->rank].bytes, mail->out[comm->rank].bytes, mail->in[comm->rank].n);
+    const struct comm_box room = mail->in[comm->rank]; /* one's own changes hands as it is */
+    mail->in[comm->rank] = mail->out[comm->rank];
+    mail->in[comm->rank].read = 0;
+    mail->out[comm->rank] = room;
     COMM_CHECK(MPI_Waitall(n_requests, requests, MPI_STATUSES_IGNORE));
     free(n_out);
     free(n_in);

@@ -62,14 +62,15 @@ static unsigned char *record(const struct table *table, int64_t i)
 
 /* --------------------------------------------------------------------------------- exchange */
 
-/* Replaces the records by those that the other ranks packed for this one, in rank order. */
+/* Replaces the records, which have been packed, by those that the other ranks packed for this
+ * one, in rank order. */
 static void receive(struct table *table, struct comm_mail *mail, const struct comm *comm)
 {
+    free(table->records);
     comm_mail_exchange(mail, comm);
     size_t n_bytes = 0;
     for (int q = 0; q < comm->n_ranks; q++)
         n_bytes += mail->in[q].n;
-    free(table->records);
     table->records = array_allocate(n_bytes, 1);
     table->n = (int64_t)(n_bytes / table->record_size);
     size_t at = 0;
@@ -119,9 +120,11 @@ void table_arrange(struct table *table, const struct comm *comm, int64_t n_ids)
     comm_sum_int(comm, &table->n_total, 1);
     struct comm_mail mail;
     comm_mail_init(&mail, comm);
-    send_by_id(table, &mail, comm, n_ids);
+    if (comm->n_ranks > 1)
+        send_by_id(table, &mail, comm, n_ids);
     sort(table);
-    send_by_row(table, &mail, comm);
+    if (comm->n_ranks > 1)
+        send_by_row(table, &mail, comm);
     comm_mail_clear(&mail);
     table->begin = slice_begin(table, comm->rank, comm->n_ranks);
 }
