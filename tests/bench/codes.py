@@ -11,10 +11,11 @@ import h5py
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 ROOT = os.path.dirname(os.path.dirname(HERE))
-WORK = os.path.join(ROOT, "build", "bench")
-BIN = os.path.abspath(os.environ.get("BIN", os.path.join(ROOT, "bin")))
-CORE = os.environ.get("CORE", "0")  # where runs of one rank are pinned
-ISA = os.environ.get("ISA", "auto")
+WORK = os.path.abspath(os.environ.get("WORK") or os.path.join(ROOT, "build", "bench"))
+OUT = os.path.abspath(os.environ.get("OUT") or HERE)
+BIN = os.path.abspath(os.environ.get("BIN") or os.path.join(ROOT, "bin"))
+CORE = os.environ.get("CORE") or "0"  # where runs of one rank are pinned
+ISA = os.environ.get("ISA") or "auto"
 PHASES = ("bodies", "facets", "pairs", "integrate", "halo", "watch", "search", "redistribute", "repartition")
 
 
@@ -121,7 +122,7 @@ def state_text(run):
 
 # ------------------------------------------------------------------------------------------------- peers
 
-PROGRAMS = {"liggghts": os.environ.get("LIGGGHTS", "liggghts"), "lammps": os.environ.get("LAMMPS", "lmp")}
+PROGRAMS = {"liggghts": os.environ.get("LIGGGHTS") or "liggghts", "lammps": os.environ.get("LAMMPS") or "lmp"}
 
 
 def peer_is_here(code):

@@ -18,7 +18,7 @@ CHECKPOINT_EVERY = 300  # [s] of wall clock, that the cost of a checkpoint is co
 SUITE = ("case", "code", "ranks", "rounds", "spheres", "steps", "rate", "least", "most", "rate_by_user", "efficiency", "z",
          "contacts_a_sphere", "ns_a_contact", *(f"{phase}_ns" for phase in codes.PHASES), "steps_between_searches",
          "bytes_a_sphere", "kinetic_J", "checkpoint_s", "checkpoint_bytes", "data_bytes", "sphere_bytes", "contact_bytes",
-         "machine")
+         "isa", "machine")
 RATE, RATIO, RATIO_WITHOUT = ("million particle-steps/s", "ratio tremie to this code",
                               "ratio tremie without ledger to this code")
 PEERS = ("case", "code", "ranks", RATE, RATIO, "ratio_least", "ratio_most", RATIO_WITHOUT, "ratio_without_least",
@@ -83,14 +83,19 @@ def write(file, columns, rows):
 
 
 def read(name):
-    file = os.path.join(codes.HERE, name + ".csv")
+    file = os.path.join(codes.OUT, name + ".csv")
     return list(csv.DictReader(open(file))) if os.path.exists(file) else []
 
 
 def merge(name, columns, rows):
-    """Rows take the place of those of the same cases in tests/bench/NAME.csv; the others stay."""
-    new = {r["case"] for r in rows}
-    write(os.path.join(codes.HERE, name + ".csv"), columns, [r for r in read(name) if r["case"] not in new] + rows)
+    """Rows take the place of those of the same cases and kernel in NAME.csv; the others stay."""
+    new = {(r["case"], r["isa"]) for r in rows}
+    write(os.path.join(codes.OUT, name + ".csv"), columns, [r for r in read(name) if (r["case"], r["isa"]) not in new] + rows)
+
+
+def name_of(r):
+    """What a table calls a row's case."""
+    return r["case"] + (f", {r['isa']}" if r["isa"] != "auto" else "")
 
 
 def keep_rounds(name, rows):
@@ -111,7 +116,8 @@ def keep_suite(rows):
         result.append({key: median(own, key) for key in SUITE if key in own[0] and key not in ("case", "code")}
                       | {"case": case, "code": code, "ranks": ranks, "rounds": len(own), "rate": statistics.median(rates),
                          "least": min(rates), "most": max(rates), "rate_by_user": median(own, "rate_user"),
-                         "efficiency": statistics.median(efficiency) if efficiency else "", "machine": machine()})
+                         "efficiency": statistics.median(efficiency) if efficiency else "", "isa": codes.ISA,
+                         "machine": machine()})
     merge("suite", SUITE, result)
 
 
@@ -125,7 +131,7 @@ def suite_table():
     for r in read("suite"):
         phases = {phase: float(r[f"{phase}_ns"]) for phase in codes.PHASES}
         others = sum(time for phase, time in phases.items() if phase not in SHOWN)
-        name = r["case"] + (", without ledger" if r["code"] == WITHOUT else "")
+        name = name_of(r) + (", without ledger" if r["code"] == WITHOUT else "")
         rate = f"{number(r['rate'])} ({number(r['least'])} to {number(r['most'])})"
         lines.append(f"| {name} | {float(r['spheres']):.0f} | {number(r['z'])} | {r['ranks']} | {rate} | {number(r['efficiency'])} | "
                      + " | ".join(f"{phases[phase]:.1f}" for phase in SHOWN)
@@ -140,7 +146,7 @@ def checkpoint_table():
         if float(r["spheres"]) < 1e5:
             continue
         took, size, data = (float(r[key]) for key in ("checkpoint_s", "checkpoint_bytes", "data_bytes"))
-        name = r["case"] + (", without ledger" if r["code"] == WITHOUT else "")
+        name = name_of(r) + (", without ledger" if r["code"] == WITHOUT else "")
         lines.append(f"| {name} | {r['ranks']} | {took:.2f} | {100 * took / CHECKPOINT_EVERY:.2f} | {size * 1e-6:.1f} | "
                      f"{data * 1e-6:.1f} | {size / data:.3f} | {number(r['sphere_bytes'], 0)} | {number(r['contact_bytes'], 0)} |")
     return lines
@@ -149,7 +155,7 @@ def checkpoint_table():
 def contact_table():
     lines = ["| bed | contacts a sphere | ns a contact and step | of one radius | a search every 20 steps | of one radius |",
              "|" + " --- |" * 6]
-    rows = {r["case"]: r for r in read("suite") if r["ranks"] == "1" and r["code"] == WITH}
+    rows = {r["case"]: r for r in read("suite") if r["ranks"] == "1" and r["code"] == WITH and r["isa"] == "auto"}
     for name in ("equal", "two", "spread"):
         own = [rows.get(f"mixture_{name}{end}") for end in ("", "_searched")]
         base = [rows.get(f"mixture_equal{end}") for end in ("", "_searched")]
@@ -215,7 +221,7 @@ def peers_table():
              "kinetic energy [J] | contacts |", "|" + " --- |" * 8]
     for r in read("peers"):
         rate = f"{number(r[RATE])} ({number(r['rate_least'])} to {number(r['rate_most'])})"
-        lines.append(f"| {r['case']} | {r['code']} | {r['ranks']} | {rate} | {ratio(r, RATIO, 'ratio')} | "
+        lines.append(f"| {name_of(r)} | {r['code']} | {r['ranks']} | {rate} | {ratio(r, RATIO, 'ratio')} | "
                      f"{ratio(r, RATIO_WITHOUT, 'ratio_without')} | {float(r['kinetic_J']):.3g} | {float(r['contacts']):.0f} |")
     return lines
 

@@ -113,14 +113,16 @@ def falling_8768():
 
 
 def dense(name, job, loose_file, options=()):
-    """Makes a dense bed of 200 000 spheres: little friction, and stiffening while it is damped."""
+    """Makes a dense bed of 200 000 spheres: with little friction, and stiffening while it is damped; then, still
+    damped, with its own friction."""
     little = [("contact.pairs.0.friction", 0.05), ("contact.pairs.0.restitution", 0.3), *options]
     first = packing(loose_file, "csv")
     return lambda file: settle(name, job, [
         stage(6.25e7, 3e-4, 7000, 3, little + first),
         stage(6.25e8, 1e-4, 4000, 30, little),
         stage(6.25e9, 3e-5, 4000, 60, little),
-        stage(6.25e10, 1e-5, 8000, 100, little)], file)
+        stage(6.25e10, 1e-5, 8000, 100, little),
+        stage(6.25e10, 1e-5, 4000, 100, options)], file)
 
 
 def loose_200k(centre):
@@ -256,7 +258,7 @@ def mixtures():
     for name, (what, sizes) in SIZES.items():
         options = [("spheres.0.sizes", sizes)] if sizes else []
         for end, often, more in (("", 0, ""), ("_searched", 20, ", a search every 20 steps")):
-            cases.append(Case(f"mixture_{name}{end}", f"6000 spheres at rest, {what}{more}", "mixture.yaml", 2e-5, 4000,
+            cases.append(Case(f"mixture_{name}{end}", f"6000 settled spheres, {what}{more}", "mixture.yaml", 2e-5, 4000,
                               options=options, relax=40000, measured=[("testing.search_every", often)]))
     return cases
 
