@@ -147,9 +147,18 @@ def flowing_200k(name, motion):
 FLOW_STEPS = 10000
 FLOW_TIME = FLOW_STEPS * 1e-5  # [s]
 GATE_SPEED = 1.0  # [m/s]
-GATE_AT = 7.0 - GATE_SPEED * FLOW_TIME  # where the gate is when measuring begins [m]
-GATE = [("bodies.0.motion", f"{{velocity: [{-GATE_SPEED}, 0, 0]}}")]
-GATE_MEASURED = GATE + [("bodies.0.geometry.move", f"[{GATE_AT - 7.0!r}, 0, 0]")]
+GATE_AT = 7.0 - GATE_SPEED * FLOW_TIME / 2  # where the gate is when measuring begins [m]
+
+
+def ramp(pieces=20):
+    """The gate comes to its speed evenly, so that no shock runs through the bed."""
+    times = [FLOW_TIME * k / pieces for k in range(pieces + 1)]
+    points = ", ".join(f"{{time: {t:.6g}, place: [{-GATE_SPEED * t**2 / (2 * FLOW_TIME):.9g}, 0, 0]}}" for t in times)
+    return [("bodies.0.motion", f"{{path: {{points: [{points}]}}}}")]
+
+
+GATE_MEASURED = [("bodies.0.motion", f"{{velocity: [{-GATE_SPEED}, 0, 0]}}"),
+                 ("bodies.0.geometry.move", f"[{GATE_AT - 7.0:.9g}, 0, 0]")]
 OPEN = [("bodies.1.active", "[1e8, 1e9]")]  # the plug is not there
 
 
@@ -285,7 +294,7 @@ CASES = [
          peers=ore_scene("bed200k/bed.h5", (-7.1, 7.1), (-7.1, 7.1), (-0.1, 20),
                          peers.box_walls(WIDE, WIDE, (0, None)), STILL)),
     Case("gate200k", "that bed while a side wall moves in at 1 m/s", "bed.yaml", 1e-5, 1000,
-         lambda: flowing_200k("gate200k", GATE), packing("gate200k/flow.h5") + GATE_MEASURED,
+         lambda: flowing_200k("gate200k", ramp()), packing("gate200k/flow.h5") + GATE_MEASURED,
          peers=ore_scene("gate200k/flow.h5", (-7.1, 7.1), (-7.1, 7.1), (-0.1, 20),
                          peers.gate_walls((-7.0, GATE_AT), WIDE, (0, None), GATE_SPEED), MOVING)),
     Case("hole200k", "that bed while it runs out through half of the floor", "bed.yaml", 1e-5, 1000,
@@ -303,7 +312,7 @@ CASES = [
     *mixtures(),
     Case("million", "a million spheres at rest, repeated along x and y", "million.yaml", 1e-5, 200, million,
          packing("million/bed.h5"), relax=2000, rest_mass=MASS),
-    Case("fall", "8768 spheres that fall and meet nothing", "settled.yaml", 1e-5, 6000, falling_8768,
+    Case("fall", "8768 spheres that fall and meet nothing", "settled.yaml", 1e-5, 12000, falling_8768,
          packing("fall/high.csv"),
          peers=ore_scene("fall/high.csv", (-2.7, 2.7), (-2.7, 2.7), (-0.05, 9), BOX_8768, MOVING)),
 ]
