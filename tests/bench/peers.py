@@ -4,12 +4,13 @@ Both codes cut off no pull, so for the restitution that is asked for they take t
 may pull; tremie, whose contacts do not, takes another one for the same restitution.  LAMMPS runs spheres of one
 material with `gran/hertz/history`, 1.4 times as fast as `granular`, which the drum needs; its damping grows with
 the width of a contact, not with the square root of that, and is that of the restitution for impacts at
-IMPACT_SPEED.  It meets the drum as an exact cylinder, LIGGGHTS and tremie as triangles.
+IMPACT_SPEED.  It meets the drum as an exact cylinder, LIGGGHTS and tremie as triangles; so it has a filling of its
+own, which tremie lets come to rest in such a cylinder.
 """
 import csv
 import math
 import os
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import h5py
 
@@ -28,6 +29,7 @@ class Scene:
     pairs: dict = None  # (friction, restitution) by kinds of materials
     skins: tuple = ()  # to try [m]
     radius: float = 0.1  # mean, and where the packing has none [m]
+    own_packing: dict = field(default_factory=dict)  # of a code that needs another one
 
 
 @dataclass(frozen=True)
@@ -44,9 +46,9 @@ M1, M2, STEEL = Material(2500.0, 1e9, 0.2), Material(2000.0, 5e8, 0.2), Material
 
 # ----------------------------------------------------------------------------------------------- spheres
 
-def spheres(scene):
+def spheres(scene, packing):
     """Rows of type, radius, density, place, velocity, angular velocity."""
-    file = os.path.join(WORK, scene.packing)
+    file = os.path.join(WORK, packing)
     still = [0.0] * 3
     if file.endswith(".h5"):
         with h5py.File(file) as state:
@@ -63,9 +65,9 @@ def spheres(scene):
     return rows
 
 
-def write_data(scene, file):
+def write_data(scene, packing, file):
     """Both codes read the same form."""
-    rows = spheres(scene)
+    rows = spheres(scene, packing)
     with open(file, "w") as out:
         out.write(f"a packing\n\n{len(rows)} atoms\n{len(scene.materials)} atom types\n\n")
         for axis, (least, most) in zip("xyz", scene.box):
@@ -136,15 +138,15 @@ def scene_liggghts(scene, folder):
 
 
 def prepare(case):
-    """Writes a scene's files; where they are, by what they are."""
+    """Writes a scene's files; for each code where its commands and its spheres are."""
     scene, folder = case.peers, os.path.join(WORK, "peers", case.name)
     os.makedirs(folder, exist_ok=True)
-    files = {"data": os.path.join(folder, "spheres.data")}
-    write_data(scene, files["data"])
+    files = {}
     for code, lines in (("liggghts", scene_liggghts), ("lammps", scene_lammps)):
-        files[code] = os.path.join(folder, code + ".scene")
-        with open(files[code], "w") as out:
+        files[code] = [os.path.join(folder, f"{code}.{end}") for end in ("scene", "data")]
+        with open(files[code][0], "w") as out:
             out.write("\n".join(lines(scene, folder)) + "\n")
+        write_data(scene, scene.own_packing.get(code, scene.packing), files[code][1])
     return files
 
 
