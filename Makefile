@@ -74,7 +74,7 @@ all_objects := $(library_objects) $(kernel_objects) $(main:%.c=$(BUILD)/%.o) $(t
 
 # --------------------------------------------------------------------------------------------- goals
 
-.PHONY: all hopper test verify stability bench charts-quick lint help install clean unit_tests \
+.PHONY: all hopper test verify stability bench bench-peers charts-quick lint help install clean unit_tests \
     verification_cases stability_cases
 .DEFAULT_GOAL := all
 
@@ -106,11 +106,17 @@ stability:
 	@$(MAKE) --no-print-directory all stability_cases
 	@BUILD='$(BUILD)' BIN='$(BIN)' FLAVOUR='$(FLAVOUR)' tests/stability/run
 
-##  make bench        measure speed on one core: a settled bed, beside LIGGGHTS where installed
+##  make bench        measure speed: all cases of tests/bench, on one core and two (CASE=name: one case)
 bench:
 	@config/setup test
 	@$(MAKE) --no-print-directory all
-	@BIN='$(BIN)' tests/bench/settled.sh
+	@BIN='$(BIN)' tests/bench/run
+
+##  make bench-peers  measure speed beside LIGGGHTS and LAMMPS (CASE=name ROUNDS=5 ISA=v3)
+bench-peers:
+	@config/setup test peers
+	@$(MAKE) --no-print-directory all
+	@BIN='$(BIN)' tests/bench/run --peers
 
 ##  make charts-quick measure speed against accuracy: tables and charts of charts/, some ten minutes
 charts-quick:
