@@ -18,16 +18,16 @@ struct job;
  * and with the linear law normal = k_n, tangential = k_t [N/m], damping = 2 beta sqrt(k_n),
  * damping_ratio = sqrt(k_t / k_n).
  */
-struct material_pair {
+struct material_pair {      /* the first eight as a row: see physics/contact_law.h */
     double normal;          /* [Pa] or [N/m] */
     double tangential;      /* [Pa] or [N/m] */
     double damping;         /* [sqrt(Pa)] or [sqrt(N/m)] */
     double damping_ratio;   /* [-] */
     double friction;        /* of what slides [-] */
+    double linear;          /* 1 with the linear law, else 0 */
     double static_friction; /* of what does not slide yet, >= friction [-] */
     double rolling;         /* rolling friction: torque over R* f_n [-] */
     double twisting;        /* twisting friction likewise [-] */
-    double linear;          /* 1 with the linear law, else 0 */
     double constant_torque; /* 1 where rolling friction has no spring, else 0 */
 };
 

@@ -38,8 +38,11 @@
 #ifndef TREMIE_PHYSICS_CONTACT_LAW_H
 #define TREMIE_PHYSICS_CONTACT_LAW_H
 
+#include <stddef.h>
+
 #include "model/material.h"
 #include "physics/lanes.h"
+#include "physics/lanes_rows.h"
 
 enum {
     CONTACT_LAW_FORCE = 0, /* three lanes of history */
@@ -119,32 +122,35 @@ LANES_INLINE struct contact_law_constants contact_law_constants_of_one(
 }
 
 #if LANES_WIDTH > 1
-/* Constants of a pair for each lane. */
+/* Constants of a pair for each lane: rows of eight, transposed. */
 LANES_INLINE struct contact_law_constants contact_law_constants_of_each(
     const struct material_pair *const pairs[LANES_WIDTH], bool full)
 {
-    lanes linear = lanes_all(pairs[0]->linear), constant = lanes_all(pairs[0]->constant_torque);
-    struct contact_law_constants all = contact_law_constants_of_one(pairs[0]);
+    lanes rows[8], twisting = lanes_all(0.0), constant = lanes_all(0.0);
 
+    _Static_assert(offsetof(struct material_pair, rolling) == 7 * sizeof(double), "a row");
 #pragma GCC unroll 8
-    for (int l = 1; l < LANES_WIDTH; l++) {
-        const struct material_pair *pair = pairs[l];
-        linear[l] = pair->linear;
-        all.normal[l] = pair->normal;
-        all.tangential[l] = pair->tangential;
-        all.damping[l] = pair->damping;
-        all.damping_ratio[l] = pair->damping_ratio;
-        all.friction[l] = pair->friction;
-        if (!full)
-            continue;
-        all.static_friction[l] = pair->static_friction;
-        all.rolling[l] = pair->rolling;
-        all.twisting[l] = pair->twisting;
-        constant[l] = pair->constant_torque;
+    for (int l = 0; l < LANES_WIDTH; l++)
+#pragma GCC unroll 4
+        for (int part = 0; part < LANES_PARTS; part++)
+            rows[LANES_WIDTH * part + l] = lanes_load(&pairs[l]->normal + LANES_WIDTH * part);
+    lanes_transpose(rows);
+    for (int l = 0; l < LANES_WIDTH && full; l++) {
+        twisting[l] = pairs[l]->twisting;
+        constant[l] = pairs[l]->constant_torque;
     }
-    all.linear = linear > lanes_all(0.0);
-    all.constant_torque = constant > lanes_all(0.0);
-    return all;
+    return (struct contact_law_constants){
+        .linear = rows[5] > lanes_all(0.0),
+        .normal = rows[0],
+        .tangential = rows[1],
+        .damping = rows[2],
+        .damping_ratio = rows[3],
+        .friction = rows[4],
+        .static_friction = rows[6],
+        .rolling = rows[7],
+        .twisting = twisting,
+        .constant_torque = constant > lanes_all(0.0),
+    };
 }
 #endif
 
