@@ -236,6 +236,8 @@ static void sort_found(struct candidates *candidates, int n_found, int n_places)
     }
     for (int k = 0; k < n_found; k++)
         candidates->second[k] = candidates->at[candidates->second[k]];
+    for (int k = 0; k < CANDIDATES_AHEAD; k++)
+        candidates->second[n_found + k] = 0;
     candidates->n = n_found;
 }
 
@@ -246,9 +248,9 @@ void candidates_search(struct candidates *candidates, const struct spheres *sphe
     reserve_found(candidates, candidates->n + candidates->n / 16); /* about as many as last */
     const int n_found =
         all_pairs ? find_all_pairs(candidates, spheres) : find_by_grids(candidates, spheres);
-    if (n_found > candidates->capacity) {
-        candidates->capacity =
-            (int)array_capacity((size_t)candidates->capacity, (size_t)n_found);
+    if (n_found + CANDIDATES_AHEAD > candidates->capacity) {
+        candidates->capacity = (int)array_capacity((size_t)candidates->capacity,
+                                                   (size_t)n_found + CANDIDATES_AHEAD);
         free(candidates->second);
         candidates->second = array_allocate_rows((size_t)candidates->capacity, sizeof(int));
     }

@@ -19,7 +19,10 @@
 
 struct spheres;
 
-enum { CANDIDATES_LEVELS = 8 };
+enum {
+    CANDIDATES_LEVELS = 8,
+    CANDIDATES_AHEAD = 32, /* valid indices behind the last candidate, to be fetched ahead */
+};
 
 /* Upper bound of each level's reach, in least reaches; the last takes the rest. */
 extern const double candidates_level_bound[CANDIDATES_LEVELS];

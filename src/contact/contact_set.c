@@ -7,7 +7,9 @@
 #include "contact/contact_set.h"
 
 #include <math.h>
+#include <stdint.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
 #include "base/report.h"
@@ -107,6 +109,9 @@ static void select_pairs(struct contact_set *contacts, const struct candidates *
         reserve_pairs(contacts, n + (candidates->row_end[place] - begin));
         for (int k = begin; k < candidates->row_end[place]; k++) {
             const int j = candidates->second[k];
+            const int ahead = candidates->second[k + CANDIDATES_AHEAD];
+            __builtin_prefetch(&spheres->motion[ahead]);
+            __builtin_prefetch(&inner[ahead]);
             const double *b = spheres->motion[j].lane;
             const double dx = b[0] - a[0], dy = b[1] - a[1], dz = b[2] - a[2];
             const double sum = reach + b[3] + inner[j];
@@ -284,28 +289,46 @@ static void match_rows(struct contact_set *contacts)
     }
 }
 
+static void copy_lane(const double *old, const int *source, int n, double *new)
+{
+    for (int k = 0; k < n; k++)
+        new[k] = old[source[k] >> 1];
+}
+
+/* The same of a lane that turns round with its contact; without a branch, which nobody could
+ * foresee. */
+static void copy_turning_lane(const double *old, const int *source, int n, double *new)
+{
+    for (int k = 0; k < n; k++) {
+        uint64_t bits;
+        memcpy(&bits, &old[source[k] >> 1], sizeof bits);
+        bits ^= (uint64_t)(source[k] & 1) << 63;
+        memcpy(&new[k], &bits, sizeof bits);
+    }
+}
+
 /* One lane anew from the old one, in the spare one, which the old one then is. */
 static void carry_lane(struct contact_set *contacts, int lane)
 {
     const struct contact_list *list = &contacts->now;
-    const bool turns = contact_lane_turns(lane);
-    const int *source = contacts->source;
-    const double *old = contacts->now.history[lane];
-    double *new = contacts->spare;
-    for (int k = 0; k < list->n; k++) {
-        const double h = source[k] >= 0 ? old[source[k] >> 1] : 0.0;
-        new[k] = turns && (source[k] & 1) && source[k] >= 0 ? -h : h;
-    }
-    for (int k = list->n; k < list->n_padded; k++)
+    double *old = list->history[lane], *new = contacts->spare;
+    const int n = old != NULL ? list->n : 0;
+    if (old != NULL)
+        old[contacts->before.n] = 0.0; /* where entries come from that were not there */
+    if (contact_lane_turns(lane))
+        copy_turning_lane(old, contacts->source, n, new);
+    else
+        copy_lane(old, contacts->source, n, new);
+    for (int k = n; k < list->n_padded; k++)
         new[k] = 0.0;
-    contacts->spare = contacts->now.history[lane];
+    contacts->spare = old;
     contacts->now.history[lane] = new;
 }
 
 /* Lanes for the present list.  Where they have to grow each is made before the old one goes. */
 static void carry_history(struct contact_set *contacts)
 {
-    const size_t needed = (size_t)contacts->now.n_padded;
+    const size_t needed = (size_t)contacts->now.n_padded + 1;
     const bool grow = needed > (size_t)contacts->history_capacity;
     const size_t capacity = grow ? needed + needed / 8 : (size_t)contacts->history_capacity;
     for (int l = 0; l < CONTACT_LANES; l++) {
@@ -340,7 +363,7 @@ static void begin_sources(struct contact_set *contacts)
 {
     contacts->source = array_allocate_rows((size_t)contacts->now.n, sizeof *contacts->source);
     for (int k = 0; k < contacts->now.n; k++)
-        contacts->source[k] = -1;
+        contacts->source[k] = 2 * contacts->before.n;
 }
 
 void contact_set_prune(struct contact_set *contacts, const struct candidates *candidates,

@@ -62,7 +62,7 @@ struct contact_set {
     /* While `now` is made: */
     struct contact_pairs before; /* pairs of the list that it replaces */
     int *source; /* of an entry: where it was before, times 2, plus 1 where it was the other way
-                    round; -1: nowhere */
+                    round; behind the last one where it was not there */
 };
 
 /* A touching contact by ids, first_id < second_id, history oriented from first to second: what

@@ -78,6 +78,7 @@ def groups(rows):
 # ------------------------------------------------------------------------------------------------- files
 
 def write(file, columns, rows):
+    os.makedirs(os.path.dirname(file), exist_ok=True)
     with open(file, "w", newline="") as out:
         writer = csv.DictWriter(out, columns, extrasaction="ignore", lineterminator="\n")
         writer.writeheader()
