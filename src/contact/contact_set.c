@@ -1,8 +1,8 @@
 /*
- * See contact_set.h.  History is carried from one list to the next lane by lane, once it is known
- * where each entry was before.  An ordinary search moves nothing in memory, so both lists are in
- * the same order and are walked side by side; else each touching contact's pair is looked for in
- * the row of its first sphere, which is short.
+ * See contact_set.h.  History is carried from one list to the next lane by lane, once it is
+ * known where each entry was before.  An ordinary search moves nothing in memory, so both lists
+ * are in the same order and are walked side by side; else each touching contact's pair is
+ * looked for in the row of its first sphere, which is short.
  */
 #include "contact/contact_set.h"
 
