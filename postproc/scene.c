@@ -102,7 +102,7 @@ static void take_body(struct body *body, const struct snapshot_body *shown)
             facets[f][k] = shown->triangles[f][k];
         facets[f][3] = -1;
     }
-    *body = (struct body){.name = array_string(shown->name)};
+    *body = (struct body){.name = array_string(shown->name), .exists = true};
     mesh_build(&body->mesh, n_points, points, n_triangles, (const int(*)[4])facets);
     free(points);
     free(facets);

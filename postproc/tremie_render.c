@@ -220,7 +220,7 @@ static struct balls gather_balls(const struct scene *scene, bool no_bodies)
     }
     for (int b = 0; b < scene->bodies.n && !no_bodies; b++) {
         const struct body *body = &scene->bodies.list[b];
-        if (body_size(body) > HUGE_BODY * extent)
+        if (!body->exists || body_size(body) > HUGE_BODY * extent)
             continue;
         for (int v = 0; v < body->mesh.n_vertices; v++)
             add_ball(&balls, body->mesh.place[v], 0.0);
@@ -274,8 +274,11 @@ static void draw_bodies(struct canvas *canvas, const struct camera *camera,
 {
     const double width = canvas->height / 800.0 > 1.6 ? canvas->height / 800.0 : 1.6;
     for (int b = 0; b < bodies->n; b++)
-        draw_faces(canvas, camera, &bodies->list[b].mesh, middle);
+        if (bodies->list[b].exists)
+            draw_faces(canvas, camera, &bodies->list[b].mesh, middle);
     for (int b = 0; b < bodies->n; b++) {
+        if (!bodies->list[b].exists)
+            continue;
         const struct mesh *mesh = &bodies->list[b].mesh;
         for (int e = 0; e < mesh->n_edges; e++)
             if (edge_shows(mesh, &mesh->edges[e], camera->eye))

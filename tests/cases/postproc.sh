@@ -3,6 +3,7 @@
 set -uo pipefail
 
 cd "$(dirname "$0")/../.." || exit 1
+root=$PWD
 bin=$(cd "$BIN" && pwd)
 python=/usr/bin/python3 # Debian's h5py is for it
 cd "$SCRATCH" || exit 1
@@ -206,6 +207,15 @@ try 0 "$bin/tremie-render" two -o ranks.png --color rank --size 320x240
 try 0 "$bin/tremie-render" "$two" -o same.png --color rank --size 320x240
 cmp -s ranks.png same.png || why+=" the run and its newest checkpoint show different ranks;"
 cmp -s ranks.png rank.png && why+=" two ranks look like one;"
+# A body that has gone is not shown: of one body alone, its plug, nothing is left.
+sed '/name: bin,/d' "$root/tests/cases/scenes/plug.yaml" > lone.yaml
+for end in 0.02 0.05; do
+    try 0 "$bin/tremie" run lone.yaml --out "lone_$end" --set time.end=$end
+    try 0 "$bin/tremie-render" "lone_$end" -o "with_$end.png" --size 160x120
+    try 0 "$bin/tremie-render" "lone_$end" -o "bare_$end.png" --size 160x120 --no-bodies
+done
+cmp -s with_0.02.png bare_0.02.png && why+=" a body that is there is not shown;"
+cmp -s with_0.05.png bare_0.05.png || why+=" a body that has gone is shown;"
 cp "$two" lone.h5
 try 4 "$bin/tremie-render" lone.h5 -o none.png --color rank
 says "error: cannot tell whose spheres lone.h5 holds: there are no series in"
