@@ -5,6 +5,7 @@
  */
 #include "run/drive.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,11 +22,19 @@
 #include "run/simulation.h"
 #include "run/step.h"
 #include "run/survey.h"
+#include "run/wall_limit.h"
 #include "store/checkpoint.h"
 #include "store/run_folder.h"
 
 /* Seconds between looks for the stop file, progress reports, and lines that stay. */
 static const double LOOKS_EVERY = 0.1, CHORES_EVERY = 1.0, LINES_EVERY = 30.0;
+
+static const char *const STOPS[] = {
+    [WATCH_GO_ON] = "",
+    [WATCH_STOP_FILE] = "as asked",
+    [WATCH_STOP_SIGNAL] = "by a signal",
+    [WATCH_STOP_TIME] = "before the wall time ends",
+};
 
 struct drive {
     const struct comm *comm;
@@ -254,7 +263,7 @@ static void do_chores(struct drive *drive)
         return;
     drive->look_at = now + LOOKS_EVERY;
     if (access(drive->stop_path, F_OK) == 0)
-        sim->watch.stop_asked = true; /* collective with the next step's reduction */
+        sim->watch.stop_asked = WATCH_STOP_FILE; /* collective with the next step's reduction */
     if (now < drive->chores_at)
         return;
     drive->chores_at = now + CHORES_EVERY;
@@ -278,26 +287,28 @@ static void do_chores(struct drive *drive)
 static bool checkpoint_is_due(struct drive *drive)
 {
     struct simulation *sim = &drive->sim;
-    const int64_t every = drive->job->checkpoint.every_steps;
-    const bool due = sim->watch.checkpoint_due || (every > 0 && sim->step % every == 0);
+    const bool due =
+        sim->watch.checkpoint_due || schedule_has_step(&sim->watch.schedule, sim->step);
     sim->watch.checkpoint_due = false;
-    if (due)
-        sim->watch.checkpoint_at = timer_now() + sim->watch.checkpoint_every;
     return due;
 }
 
 static int save(struct drive *drive)
 {
+    const double began = timer_now();
     const int status = simulation_save(&drive->sim, &drive->folder, drive->job_text);
-    if (status == REPORT_FINISHED)
-        report_note("checkpoint at step %lld (%.6g s)", (long long)drive->sim.step,
-                    (double)drive->sim.step * drive->sim.dt);
-    else
+    const double now = timer_now();
+    if (status == REPORT_FINISHED) {
+        schedule_saved(&drive->sim.watch.schedule, now, now - began);
+        report_note("checkpoint at step %lld (%.6g s) in %.3g s", (long long)drive->sim.step,
+                    (double)drive->sim.step * drive->sim.dt, now - began);
+    } else {
         report_error(
             "the checkpoint of step %lld could not be written; the one before stands, make "
             "room and "
             "give the same command again",
             (long long)drive->sim.step);
+    }
     return status;
 }
 
@@ -307,7 +318,7 @@ static int loop(struct drive *drive)
     /* What a run resumes from is there already, unless it is another run's. */
     int64_t saved_at = sim->step > 0 && drive->options->restart == NULL ? sim->step : -1;
     int status = REPORT_FINISHED;
-    while (sim->step < sim->n_steps && !sim->watch.stop_agreed &&
+    while (sim->step < sim->n_steps && sim->watch.stop == WATCH_GO_ON &&
            sim->watch.failure == WATCH_FINE) {
         step(sim);
         status = capture_write(sim, &drive->folder);
@@ -355,6 +366,25 @@ static int finish_series(struct drive *drive)
     return status;
 }
 
+/* Lets the run know when it has to stop. */
+static void limit_time(struct drive *drive)
+{
+    struct schedule *schedule = &drive->sim.watch.schedule;
+    const char *whose;
+    const double left = wall_limit_left(drive->options->wall, &whose);
+    char text[32];
+    schedule_guess(schedule, drive->sim.n_spheres);
+    if (drive->comm->rank != 0 || isinf(left))
+        return;
+    schedule_limit(schedule, timer_now(), left);
+    format_duration(text, sizeof text, left > 0.0 ? left : 0.0);
+    report_note("%s of wall time are left (%s)", text, whose);
+    if (left < schedule_reserve(schedule))
+        report_warn("the wall time that is left by %s, %s, is hardly enough for a checkpoint; "
+                    "ask for more",
+                    whose, text);
+}
+
 static int finish(struct drive *drive, int status)
 {
     struct simulation *sim = &drive->sim;
@@ -375,8 +405,9 @@ static int finish(struct drive *drive, int status)
                    (long long)sim->step, (double)sim->step * sim->dt, took, rate * 1e-6,
                    drive->overlap);
     else if (status == REPORT_STOPPED)
-        report_say("stopped with a checkpoint at step %lld of %lld; the same command resumes",
-                   (long long)sim->step, (long long)sim->n_steps);
+        report_say(
+            "stopped %s with a checkpoint at step %lld of %lld; the same command resumes",
+            STOPS[sim->watch.stop], (long long)sim->step, (long long)sim->n_steps);
     if (drive->comm->rank == 0)
         write_status(drive,
                      status == REPORT_FINISHED  ? "finished"
@@ -396,6 +427,7 @@ int drive_run(const struct comm *comm, const struct options *options, const stru
         if (status == REPORT_FINISHED) {
             drive.first_step = drive.sim.step;
             drive.started = timer_now();
+            limit_time(&drive);
             drive.look_at = drive.chores_at = drive.started;
             drive.line_at = drive.started + LINES_EVERY;
             if (drive.ended)

@@ -39,6 +39,7 @@ static const char USAGE[] =
     "  --out DIR                 the run folder (default: runs/ and the job's name)\n"
     "  --fresh                   start over; what is there is set aside\n"
     "  --restart FILE            start from this checkpoint\n"
+    "  --wall TIME               stop with a checkpoint before this wall time is over\n"
     "  --isa NAME                pair kernel: auto, generic, v2, v3 or v4\n"
     "exit status: 0 finished; 2 bad input; 3 unstable; 4 disk or file; 75 stopped with a "
     "checkpoint;\n"

@@ -25,6 +25,7 @@ struct options {
     const char *run;     /* status, stop */
     const char *out;     /* NULL: runs/NAME */
     const char *restart; /* NULL: the newest good checkpoint */
+    double wall;         /* this process's wall time [s]; 0: not limited here */
     bool fresh;
     enum isa isa;
     int n_overrides;

@@ -101,7 +101,7 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     removals_init(&sim->removals, job, &sim->bodies);
     observe_init(&sim->observe, sim);
     capture_init(&sim->capture, sim);
-    watch_init(&sim->watch, job->checkpoint.every_wall);
+    watch_init(&sim->watch, job);
 }
 
 /* Spheres are here in some order: complete them, choose kernels, distribute and search. */
