@@ -3,6 +3,7 @@
 
 #include <inttypes.h>
 #include <stdio.h>
+#include <stdlib.h>
 #include <string.h>
 #include <time.h>
 #include <unistd.h>
@@ -34,4 +35,16 @@ double process_age(int64_t id)
     if (ticks <= 0 || !process_lives(id, &started) || clock_gettime(CLOCK_BOOTTIME, &now) != 0)
         return -1.0;
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec - (double)started / (double)ticks;
+}
+
+void process_job(char *text, size_t size)
+{
+    static const char *const schedulers[][2] = {
+        {"slurm", "SLURM_JOB_ID"}, {"pbs", "PBS_JOBID"}, {"lsf", "LSB_JOBID"}};
+    text[0] = '\0';
+    for (size_t k = 0; k < sizeof schedulers / sizeof *schedulers && text[0] == '\0'; k++) {
+        const char *id = getenv(schedulers[k][1]);
+        if (id != NULL)
+            snprintf(text, size, "%s %s", schedulers[k][0], id);
+    }
 }

@@ -34,6 +34,7 @@ static const char *const STOPS[] = {
     [WATCH_STOP_FILE] = "as asked",
     [WATCH_STOP_SIGNAL] = "by a signal",
     [WATCH_STOP_TIME] = "before the wall time ends",
+    [WATCH_STOP_LOST] = "",
 };
 
 struct drive {
@@ -60,6 +61,7 @@ static void share_path(struct drive *drive)
     if (drive->comm->rank != 0)
         drive->folder.path = path = array_allocate((size_t)size, 1);
     comm_broadcast(drive->comm, path, (size_t)size);
+    comm_broadcast(drive->comm, drive->folder.tag, sizeof drive->folder.tag);
 }
 
 /* A checkpoint that was asked for by name must be one, before anything is made. */
@@ -81,14 +83,16 @@ static int look_at_restart(const char *path)
 static int open_folder(struct drive *drive)
 {
     int words[2] = {REPORT_FINISHED, 0};
-    drive->folder = (struct run_folder){.path = NULL, .lock = -1};
+    drive->folder = (struct run_folder){.path = NULL};
     if (drive->comm->rank == 0)
         words[0] = look_at_restart(drive->options->restart);
     if (drive->comm->rank == 0 && words[0] == REPORT_FINISHED) {
         char *path = drive->options->out != NULL ? array_string(drive->options->out)
                                                  : array_format("runs/%s", drive->job->name);
         bool resumes = false;
-        words[0] = run_folder_open(&drive->folder, path, drive->job_text, drive->options->fresh,
+        words[0] = run_folder_open(&drive->folder, path, drive->job_text,
+                                   (drive->options->fresh ? RUN_FOLDER_FRESH : 0) |
+                                       (drive->options->take_over ? RUN_FOLDER_TAKE_OVER : 0),
                                    &resumes);
         words[1] = resumes;
         if (words[0] == REPORT_FINISHED) {
@@ -267,6 +271,10 @@ static void do_chores(struct drive *drive)
     if (now < drive->chores_at)
         return;
     drive->chores_at = now + CHORES_EVERY;
+    if (run_folder_is_lost(&drive->folder)) {
+        sim->watch.stop_asked = WATCH_STOP_LOST;
+        return;
+    }
     const double done = (double)(sim->step - drive->first_step), elapsed = now - drive->started;
     const double rate = elapsed > 0.0 ? done * (double)sim->n_spheres / elapsed : 0.0;
     char left[32] = "unknown";
@@ -293,6 +301,12 @@ static bool checkpoint_is_due(struct drive *drive)
     return due;
 }
 
+/* Does this process, rank 0, still own the folder? */
+static bool is_ours(const struct drive *drive)
+{
+    return drive->comm->rank == 0 && run_lock_is_ours(drive->folder.lock);
+}
+
 static int save(struct drive *drive)
 {
     const double began = timer_now();
@@ -300,9 +314,11 @@ static int save(struct drive *drive)
     const double now = timer_now();
     if (status == REPORT_FINISHED) {
         schedule_saved(&drive->sim.watch.schedule, now, now - began);
-        report_note("checkpoint at step %lld (%.6g s) in %.3g s", (long long)drive->sim.step,
-                    (double)drive->sim.step * drive->sim.dt, now - began);
-    } else {
+        if (is_ours(drive))
+            report_note("checkpoint at step %lld (%.6g s) in %.3g s",
+                        (long long)drive->sim.step, (double)drive->sim.step * drive->sim.dt,
+                        now - began);
+    } else if (is_ours(drive)) { /* else that was said */
         report_error(
             "the checkpoint of step %lld could not be written; the one before stands, make "
             "room and "
@@ -338,6 +354,8 @@ static int loop(struct drive *drive)
         watch_explain(&sim->watch, sim);
         return REPORT_UNSTABLE;
     }
+    if (sim->watch.stop == WATCH_STOP_LOST)
+        return REPORT_STORAGE;
     if (saved_at != sim->step)
         status = save(drive);
     return status;
@@ -408,7 +426,7 @@ static int finish(struct drive *drive, int status)
         report_say(
             "stopped %s with a checkpoint at step %lld of %lld; the same command resumes",
             STOPS[sim->watch.stop], (long long)sim->step, (long long)sim->n_steps);
-    if (drive->comm->rank == 0)
+    if (is_ours(drive))
         write_status(drive,
                      status == REPORT_FINISHED  ? "finished"
                      : status == REPORT_STOPPED ? "stopped"

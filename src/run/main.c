@@ -38,6 +38,7 @@ static const char USAGE[] =
     "  --set KEY=VALUE           override a key of the job, for instance time.end=0.5\n"
     "  --out DIR                 the run folder (default: runs/ and the job's name)\n"
     "  --fresh                   start over; what is there is set aside\n"
+    "  --take-over               take the folder from another process that uses it\n"
     "  --restart FILE            start from this checkpoint\n"
     "  --wall TIME               stop with a checkpoint before this wall time is over\n"
     "  --isa NAME                pair kernel: auto, generic, v2, v3 or v4\n"
@@ -49,7 +50,7 @@ static const char USAGE[] =
  * that is asked for; *has_state tells whether there is any to go on from.  NULL: none. */
 static char *text_as_used(const struct job *job, const struct options *options, bool *has_state)
 {
-    struct run_folder folder = {.lock = -1};
+    struct run_folder folder = {.path = NULL};
     struct checkpoint header;
     int64_t *steps = NULL;
     char *text = NULL, *why = NULL;

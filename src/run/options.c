@@ -59,6 +59,10 @@ static bool read_option(struct options *options, const char *word, const char *v
         options->fresh = true;
         return true;
     }
+    if (strcmp(word, "--take-over") == 0) {
+        options->take_over = true;
+        return true;
+    }
     static const char *const with_value[] = {"--set", "--out", "--restart", "--isa", "--wall"};
     int which = -1;
     for (int k = 0; k < 5; k++)

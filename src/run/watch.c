@@ -405,6 +405,8 @@ static double find_motion(struct watch *watch, const struct simulation *sim, dou
 /* This rank's reason to stop. */
 static enum watch_stop wish_to_stop(struct watch *watch, const struct simulation *sim)
 {
+    if (watch->stop_asked == WATCH_STOP_LOST)
+        return WATCH_STOP_LOST;
     if (sim->comm->rank == 0 && schedule_is_over(&watch->schedule, timer_now()))
         return WATCH_STOP_TIME;
     return control_asked() != 0 ? WATCH_STOP_SIGNAL : watch->stop_asked;

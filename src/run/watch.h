@@ -40,6 +40,7 @@ enum watch_stop {
     WATCH_STOP_FILE, /* `tremie stop` asked for it */
     WATCH_STOP_SIGNAL,
     WATCH_STOP_TIME, /* its wall time is nearly over */
+    WATCH_STOP_LOST, /* another process has taken the run's folder */
 };
 
 /* Steps between looks at what only changes slowly.  They are part of the result: a run stops at
