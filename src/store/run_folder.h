@@ -25,10 +25,11 @@ enum { RUN_FOLDER_FRESH = 1, RUN_FOLDER_TAKE_OVER = 2 };
  * Makes or opens the folder for a job whose used text is job_text (job_write), taking the lock.
  * - New or empty folder: created with its subfolders, job.yaml written.
  * - Folder of the same job (job_difference finds nothing): job.yaml rewritten, *resumes true.
- * - RUN_FOLDER_FRESH in `how`: what is there is moved into RUN/set_aside_N/ (said), then as new.
+ * - RUN_FOLDER_FRESH in `how`: what is there is moved into RUN/set_aside_N/ (said), then as
+ *   new.
  * - Another job's folder, a folder with other things in it, a read-only place, a live lock
- *   (unless RUN_FOLDER_TAKE_OVER is in `how`): refused (REPORT_BAD_INPUT or REPORT_STORAGE) with the difference and the remedy, nothing
- *   changed.
+ *   (unless RUN_FOLDER_TAKE_OVER is in `how`): refused (REPORT_BAD_INPUT or REPORT_STORAGE)
+ *   with the difference and the remedy, nothing changed.
  */
 int run_folder_open(struct run_folder *folder, const char *path, const char *job_text, int how,
                     bool *resumes);

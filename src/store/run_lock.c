@@ -62,7 +62,7 @@ static void wait_for(double seconds)
     nanosleep(&pause, NULL);
 }
 
-/* ------------------------------------------------------------------------------------- text */
+/* -------------------------------------------------------------------------------- text */
 
 static void find_place(char place[128])
 {
@@ -169,7 +169,7 @@ bool run_lock_read(const char *folder, struct run_lock_owner *owner)
     return there;
 }
 
-/* ------------------------------------------------------------------------------------ judging */
+/* -------------------------------------------------------------------------------- judging */
 
 enum run_lock_life run_lock_look_for(const struct run_lock_owner *owner)
 {
@@ -223,7 +223,7 @@ static void refuse(const struct run_lock *lock, const char *text)
                  owner.job[0] != '\0' ? ", job " : "", owner.job, owner.since, lock->folder);
 }
 
-/* ------------------------------------------------------------------------------------- taking */
+/* -------------------------------------------------------------------------------- taking */
 
 /* The lock under another name; 0 or the error. */
 static int prepare(struct run_lock *lock)
@@ -289,7 +289,8 @@ static int put_over(struct run_lock *lock, const char *text)
     return error;
 }
 
-/* Tries once; 0, EAGAIN or ENOENT when another try may help, EBUSY when it is held, or another error. */
+/* Tries once; 0, EAGAIN or ENOENT when another try may help, EBUSY when it is held, or another
+ * error. */
 static int try_to_take(struct run_lock *lock, bool take_over)
 {
     int error = put_new(lock);
@@ -314,7 +315,7 @@ static int try_to_take(struct run_lock *lock, bool take_over)
     return error;
 }
 
-/* ------------------------------------------------------------------------------------- heart */
+/* -------------------------------------------------------------------------------- heart */
 
 static void *beat(void *argument)
 {
@@ -373,7 +374,7 @@ static void stop_heart(struct run_lock *lock)
     pthread_mutex_destroy(&lock->mutex);
 }
 
-/* -------------------------------------------------------------------------------------- whole */
+/* -------------------------------------------------------------------------------- whole */
 
 static void destroy(struct run_lock *lock)
 {
