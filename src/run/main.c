@@ -21,6 +21,7 @@
 #include "run/control.h"
 #include "run/drive.h"
 #include "run/options.h"
+#include "run/outside.h"
 #include "store/checkpoint.h"
 #include "store/file.h"
 #include "store/run_folder.h"
@@ -30,8 +31,8 @@ static const char USAGE[] =
     "usage: tremie COMMAND ...\n"
     "  run JOB.yaml [options]    run the job; the same command again resumes it\n"
     "  check JOB.yaml [options]  validate it; print scene, critical steps, cost, warnings\n"
-    "  status RUN                how a run stands, from its folder\n"
-    "  stop RUN                  ask a run on this machine to stop with a checkpoint\n"
+    "  status RUN [--json]       where a run stands, from its folder, while it runs\n"
+    "  stop RUN                  ask a run to stop with a checkpoint\n"
     "  reference                 print the reference page of job files\n"
     "  version                   print the version\n"
     "options:\n"
@@ -148,9 +149,9 @@ static int command(const struct comm *comm, const struct options *options)
     case OPTIONS_CHECK:
         return run_or_check(comm, options);
     case OPTIONS_STATUS:
-        return comm->rank == 0 ? drive_status(options->run) : REPORT_FINISHED;
+        return comm->rank == 0 ? outside_status(options->run, options->json) : REPORT_FINISHED;
     case OPTIONS_STOP:
-        return comm->rank == 0 ? drive_stop(options->run) : REPORT_FINISHED;
+        return comm->rank == 0 ? outside_stop(options->run) : REPORT_FINISHED;
     case OPTIONS_REFERENCE:
         if (comm->rank == 0) {
             char *page = job_reference_page();

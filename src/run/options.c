@@ -55,13 +55,17 @@ static bool read_wall(struct options *options, const char *text)
 static bool read_option(struct options *options, const char *word, const char *value, int *used)
 {
     *used = 1;
-    if (strcmp(word, "--fresh") == 0) {
-        options->fresh = true;
-        return true;
-    }
-    if (strcmp(word, "--take-over") == 0) {
-        options->take_over = true;
-        return true;
+    const struct {
+        const char *name;
+        bool *given;
+    } flags[] = {{"--fresh", &options->fresh},
+                 {"--take-over", &options->take_over},
+                 {"--json", &options->json}};
+    for (size_t k = 0; k < sizeof flags / sizeof *flags; k++) {
+        if (strcmp(word, flags[k].name) == 0) {
+            *flags[k].given = true;
+            return true;
+        }
     }
     static const char *const with_value[] = {"--set", "--out", "--restart", "--isa", "--wall"};
     int which = -1;

@@ -26,7 +26,7 @@ struct options {
     const char *out;     /* NULL: runs/NAME */
     const char *restart; /* NULL: the newest good checkpoint */
     double wall;         /* this process's wall time [s]; 0: not limited here */
-    bool fresh, take_over;
+    bool fresh, take_over, json;
     enum isa isa;
     int n_overrides;
     struct job_override *overrides;

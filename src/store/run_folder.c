@@ -23,8 +23,8 @@
 
 /* What a run keeps in its folder and what moves aside when it starts over; beside these the
  * lock, older set_aside_N and hidden files may be there. */
-static const char *const RESULTS[] = {"job.yaml",  "checkpoints", "series",
-                                      "snapshots", "log",         "status"};
+static const char *const RESULTS[] = {"job.yaml", "checkpoints", "series", "snapshots",
+                                      "log",      "status",      "history"};
 enum { N_RESULTS = sizeof RESULTS / sizeof *RESULTS };
 
 static const char *const SUBFOLDERS[] = {"checkpoints", "series"};
