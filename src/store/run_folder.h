@@ -1,7 +1,7 @@
 /*
- * The folder a run owns: RUN/job.yaml, checkpoints/, series/, snapshots/, log, status, history, lock,
- * stop (while somebody wants that) and what was moved out of the way, set_aside_N/.  Nothing is
- * written anywhere else, and a folder with other things in it is not touched.  All functions
+ * The folder a run owns: RUN/job.yaml, checkpoints/, series/, snapshots/, log, status, history,
+ * lock, stop (while somebody wants that) and what was moved out of the way, set_aside_N/.
+ * Nothing is written anywhere else, and a folder with other things in it is not touched.  All functions
  * act on one process (rank 0) and return a REPORT_ status with the reason said; the caller
  * broadcasts it.
  */
