@@ -1,9 +1,9 @@
 /*
  * The folder a run owns: RUN/job.yaml, checkpoints/, series/, snapshots/, log, status, history,
  * lock, stop (while somebody wants that) and what was moved out of the way, set_aside_N/.
- * Nothing is written anywhere else, and a folder with other things in it is not touched.  All functions
- * act on one process (rank 0) and return a REPORT_ status with the reason said; the caller
- * broadcasts it.
+ * Nothing is written anywhere else, and a folder with other things in it is not touched.  All
+ * functions act on one process (rank 0) and return a REPORT_ status with the reason said; the
+ * caller broadcasts it.
  */
 #ifndef TREMIE_STORE_RUN_FOLDER_H
 #define TREMIE_STORE_RUN_FOLDER_H
