@@ -3,7 +3,7 @@
 packages = ompi-c hdf5-openmpi yaml-0.1 libpng zlib
 # The libraries' headers are included as system headers: their warnings are not ours.
 CPPFLAGS := -D_GNU_SOURCE -Isrc $(subst -I,-isystem ,$(shell pkg-config --cflags $(packages) 2>/dev/null))
-LDLIBS := $(shell pkg-config --libs $(packages) 2>/dev/null) -lm
+LDLIBS := $(shell pkg-config --libs $(packages) 2>/dev/null) -lm -pthread
 
 warnings = -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Wstrict-prototypes \
     -Wmissing-prototypes -Wundef -Wvla -Wcast-qual -Wformat=2 -Wwrite-strings -Wswitch-enum

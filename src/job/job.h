@@ -422,6 +422,8 @@ struct job {
     struct {
         double every_wall;   /* [s]; 0: never */
         int64_t every_steps; /* 0: never */
+        double every_time;   /* simulated [s]; 0: never */
+        double mtbf;         /* mean time between failures [s]; 0: unknown */
         int keep;
     } checkpoint;
     struct {

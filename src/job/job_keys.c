@@ -819,6 +819,14 @@ static const struct schema_key every_keys[] = {
      .unit = "s", .standard = "600", BETWEEN(0.0, 1e9), AT(struct job, checkpoint.every_wall)},
     {"steps", SCHEMA_COUNT, "steps between checkpoints; 0: not by steps", .standard = "0",
      BETWEEN(0.0, 1e15), AT(struct job, checkpoint.every_steps)},
+    {"time", SCHEMA_NUMBER,
+     "simulated time between checkpoints, rounded to whole steps (at least one); 0: not by it",
+     .unit = "s", .standard = "0", BETWEEN(0.0, 1e9), AT(struct job, checkpoint.every_time)},
+    {"mtbf", SCHEMA_NUMBER,
+     "mean time between failures of the machine, or between preemptions: the wall-clock time "
+     "between checkpoints is then sqrt(2 C mtbf) instead of `wall`, where C is what one takes "
+     "(Young 1974, Daly 2006); 0: as `wall` says",
+     .unit = "s", .standard = "0", BETWEEN(0.0, 1e12), AT(struct job, checkpoint.mtbf)},
     END};
 
 static const struct schema_key checkpoint_keys[] = {

@@ -229,6 +229,7 @@ int capture_write(struct simulation *sim, const struct run_folder *folder)
         return REPORT_FINISHED;
     char *path = array_format("%s/snapshots", folder->path);
     runtime_begin(&sim->runtime);
+    capture->snapshot.folder = folder;
     int status = snapshot_write(sim->comm, path, &capture->snapshot);
     if (status == REPORT_FINISHED && sim->comm->rank == 0) {
         xdmf_add(&capture->index, &capture->snapshot);

@@ -22,7 +22,7 @@
 char *chain_checkpoint(const struct job *job)
 {
     struct stat status;
-    struct run_folder folder = {.path = job->start.from, .lock = -1};
+    struct run_folder folder = {.path = job->start.from};
     int64_t *steps = NULL;
     char *path = NULL;
     if (stat(folder.path, &status) != 0)

@@ -5,6 +5,7 @@
  */
 #include "run/drive.h"
 
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -21,11 +22,21 @@
 #include "run/simulation.h"
 #include "run/step.h"
 #include "run/survey.h"
+#include "run/wall_limit.h"
 #include "store/checkpoint.h"
 #include "store/run_folder.h"
+#include "store/run_record.h"
 
 /* Seconds between looks for the stop file, progress reports, and lines that stay. */
 static const double LOOKS_EVERY = 0.1, CHORES_EVERY = 1.0, LINES_EVERY = 30.0;
+
+static const char *const STOPS[] = {
+    [WATCH_GO_ON] = "",
+    [WATCH_STOP_FILE] = "as asked",
+    [WATCH_STOP_SIGNAL] = "by a signal",
+    [WATCH_STOP_TIME] = "before the wall time ends",
+    [WATCH_STOP_LOST] = "",
+};
 
 struct drive {
     const struct comm *comm;
@@ -51,6 +62,7 @@ static void share_path(struct drive *drive)
     if (drive->comm->rank != 0)
         drive->folder.path = path = array_allocate((size_t)size, 1);
     comm_broadcast(drive->comm, path, (size_t)size);
+    comm_broadcast(drive->comm, drive->folder.tag, sizeof drive->folder.tag);
 }
 
 /* A checkpoint that was asked for by name must be one, before anything is made. */
@@ -72,14 +84,16 @@ static int look_at_restart(const char *path)
 static int open_folder(struct drive *drive)
 {
     int words[2] = {REPORT_FINISHED, 0};
-    drive->folder = (struct run_folder){.path = NULL, .lock = -1};
+    drive->folder = (struct run_folder){.path = NULL};
     if (drive->comm->rank == 0)
         words[0] = look_at_restart(drive->options->restart);
     if (drive->comm->rank == 0 && words[0] == REPORT_FINISHED) {
         char *path = drive->options->out != NULL ? array_string(drive->options->out)
                                                  : array_format("runs/%s", drive->job->name);
         bool resumes = false;
-        words[0] = run_folder_open(&drive->folder, path, drive->job_text, drive->options->fresh,
+        words[0] = run_folder_open(&drive->folder, path, drive->job_text,
+                                   (drive->options->fresh ? RUN_FOLDER_FRESH : 0) |
+                                       (drive->options->take_over ? RUN_FOLDER_TAKE_OVER : 0),
                                    &resumes);
         words[1] = resumes;
         if (words[0] == REPORT_FINISHED) {
@@ -231,18 +245,19 @@ static void format_duration(char *text, size_t size, double seconds)
         snprintf(text, size, "%ld:%02ld:%02ld", s / 3600, s / 60 % 60, s % 60);
 }
 
-static void write_status(const struct drive *drive, const char *state, double rate,
-                         const char *left)
+static void write_status(const struct drive *drive, const char *state, double rate, double left)
 {
     const struct simulation *sim = &drive->sim;
-    char *text =
-        array_format("state: %s\nstep: %lld of %lld\ntime: %.6g of %.6g s\nspheres: %lld\n"
-                     "rate: %.3g million particle-steps/s on %d ranks\nremaining: %s\n",
-                     state, (long long)sim->step, (long long)sim->n_steps,
-                     (double)sim->step * sim->dt, (double)sim->n_steps * sim->dt,
-                     (long long)sim->n_spheres, rate * 1e-6, drive->comm->n_ranks, left);
-    run_folder_status(&drive->folder, text);
-    free(text);
+    struct run_record_status status = {.step = sim->step,
+                                       .n_steps = sim->n_steps,
+                                       .n_spheres = sim->n_spheres,
+                                       .time = (double)sim->step * sim->dt,
+                                       .end = (double)sim->n_steps * sim->dt,
+                                       .rate = rate,
+                                       .left = left,
+                                       .ranks = drive->comm->n_ranks};
+    snprintf(status.state, sizeof status.state, "%s", state);
+    run_record_write_status(&drive->folder, &status);
 }
 
 /* Progress, status and the stop file; on rank 0. */
@@ -254,15 +269,20 @@ static void do_chores(struct drive *drive)
         return;
     drive->look_at = now + LOOKS_EVERY;
     if (access(drive->stop_path, F_OK) == 0)
-        sim->watch.stop_asked = true; /* collective with the next step's reduction */
+        sim->watch.stop_asked = WATCH_STOP_FILE; /* collective with the next step's reduction */
     if (now < drive->chores_at)
         return;
     drive->chores_at = now + CHORES_EVERY;
+    if (run_folder_is_lost(&drive->folder)) {
+        sim->watch.stop_asked = WATCH_STOP_LOST;
+        return;
+    }
     const double done = (double)(sim->step - drive->first_step), elapsed = now - drive->started;
     const double rate = elapsed > 0.0 ? done * (double)sim->n_spheres / elapsed : 0.0;
-    char left[32] = "unknown";
-    if (done > 0.0)
-        format_duration(left, sizeof left, elapsed / done * (double)(sim->n_steps - sim->step));
+    const double left = done > 0.0 ? elapsed / done * (double)(sim->n_steps - sim->step) : -1.0;
+    char text[32] = "unknown";
+    if (left >= 0.0)
+        format_duration(text, sizeof text, left);
     const bool keep = now >= drive->line_at;
     if (keep)
         drive->line_at = now + LINES_EVERY;
@@ -271,33 +291,43 @@ static void do_chores(struct drive *drive)
         "step %lld of %lld, %.4g s, %.3g million particle-steps/s, overlap %.2g, imbalance "
         "%.2f, %s left",
         (long long)sim->step, (long long)sim->n_steps, (double)sim->step * sim->dt, rate * 1e-6,
-        sim->watch.overlap, sim->balance.imbalance > 0.0 ? sim->balance.imbalance : 1.0, left);
+        sim->watch.overlap, sim->balance.imbalance > 0.0 ? sim->balance.imbalance : 1.0, text);
     write_status(drive, "running", rate, left);
 }
 
 static bool checkpoint_is_due(struct drive *drive)
 {
     struct simulation *sim = &drive->sim;
-    const int64_t every = drive->job->checkpoint.every_steps;
-    const bool due = sim->watch.checkpoint_due || (every > 0 && sim->step % every == 0);
+    const bool due =
+        sim->watch.checkpoint_due || schedule_has_step(&sim->watch.schedule, sim->step);
     sim->watch.checkpoint_due = false;
-    if (due)
-        sim->watch.checkpoint_at = timer_now() + sim->watch.checkpoint_every;
     return due;
+}
+
+/* Does this process, rank 0, still own the folder? */
+static bool is_ours(const struct drive *drive)
+{
+    return drive->comm->rank == 0 && run_lock_is_ours(drive->folder.lock);
 }
 
 static int save(struct drive *drive)
 {
+    const double began = timer_now();
     const int status = simulation_save(&drive->sim, &drive->folder, drive->job_text);
-    if (status == REPORT_FINISHED)
-        report_note("checkpoint at step %lld (%.6g s)", (long long)drive->sim.step,
-                    (double)drive->sim.step * drive->sim.dt);
-    else
+    const double now = timer_now();
+    if (status == REPORT_FINISHED) {
+        schedule_saved(&drive->sim.watch.schedule, now, now - began);
+        if (is_ours(drive))
+            report_note("checkpoint at step %lld (%.6g s) in %.3g s",
+                        (long long)drive->sim.step, (double)drive->sim.step * drive->sim.dt,
+                        now - began);
+    } else if (is_ours(drive)) { /* else that was said */
         report_error(
             "the checkpoint of step %lld could not be written; the one before stands, make "
             "room and "
             "give the same command again",
             (long long)drive->sim.step);
+    }
     return status;
 }
 
@@ -307,7 +337,7 @@ static int loop(struct drive *drive)
     /* What a run resumes from is there already, unless it is another run's. */
     int64_t saved_at = sim->step > 0 && drive->options->restart == NULL ? sim->step : -1;
     int status = REPORT_FINISHED;
-    while (sim->step < sim->n_steps && !sim->watch.stop_agreed &&
+    while (sim->step < sim->n_steps && sim->watch.stop == WATCH_GO_ON &&
            sim->watch.failure == WATCH_FINE) {
         step(sim);
         status = capture_write(sim, &drive->folder);
@@ -327,6 +357,8 @@ static int loop(struct drive *drive)
         watch_explain(&sim->watch, sim);
         return REPORT_UNSTABLE;
     }
+    if (sim->watch.stop == WATCH_STOP_LOST)
+        return REPORT_STORAGE;
     if (saved_at != sim->step)
         status = save(drive);
     return status;
@@ -355,6 +387,61 @@ static int finish_series(struct drive *drive)
     return status;
 }
 
+/* What checkpoints took the process before. */
+static void recall_cost(struct drive *drive)
+{
+    struct run_record_event *events;
+    const int n = run_record_history(drive->folder.path, &events);
+    for (int k = 0; k < n; k++)
+        if (!events[k].start && events[k].cost > 0.0)
+            drive->sim.watch.schedule.cost = events[k].cost;
+    free(events);
+}
+
+/* Lets the run know when it has to stop. */
+static void limit_time(struct drive *drive)
+{
+    struct schedule *schedule = &drive->sim.watch.schedule;
+    const char *whose;
+    const double left = wall_limit_left(drive->options->wall, &whose);
+    char text[32];
+    schedule_guess(schedule, drive->sim.n_spheres);
+    if (drive->comm->rank != 0)
+        return;
+    recall_cost(drive);
+    if (isinf(left))
+        return;
+    schedule_limit(schedule, timer_now(), left);
+    format_duration(text, sizeof text, left > 0.0 ? left : 0.0);
+    report_note("%s of wall time are left (%s)", text, whose);
+    if (left < schedule_reserve(schedule))
+        report_warn("the wall time that is left by %s, %s, is hardly enough for a checkpoint; "
+                    "ask for more",
+                    whose, text);
+}
+
+static void record_start(const struct drive *drive)
+{
+    const struct run_record_event event = {
+        .start = true, .step = drive->sim.step, .ranks = drive->comm->n_ranks};
+    run_record_add_event(&drive->folder, &event);
+}
+
+static void record_end(const struct drive *drive, int status, double rate, double elapsed)
+{
+    struct run_record_event event = {.step = drive->sim.step,
+                                     .status = status,
+                                     .seconds = elapsed,
+                                     .cost = drive->sim.watch.schedule.cost};
+    const char *state = status == REPORT_FINISHED  ? "finished"
+                        : status == REPORT_STOPPED ? "stopped"
+                                                   : "failed";
+    snprintf(event.why, sizeof event.why, "%s%s%s", state, status == REPORT_STOPPED ? " " : "",
+             status == REPORT_STOPPED ? STOPS[drive->sim.watch.stop] : "");
+    write_status(drive, state, rate, status == REPORT_FINISHED ? 0.0 : -1.0);
+    run_record_add_event(&drive->folder, &event);
+}
+
 static int finish(struct drive *drive, int status)
 {
     struct simulation *sim = &drive->sim;
@@ -375,14 +462,11 @@ static int finish(struct drive *drive, int status)
                    (long long)sim->step, (double)sim->step * sim->dt, took, rate * 1e-6,
                    drive->overlap);
     else if (status == REPORT_STOPPED)
-        report_say("stopped with a checkpoint at step %lld of %lld; the same command resumes",
-                   (long long)sim->step, (long long)sim->n_steps);
-    if (drive->comm->rank == 0)
-        write_status(drive,
-                     status == REPORT_FINISHED  ? "finished"
-                     : status == REPORT_STOPPED ? "stopped"
-                                                : "failed",
-                     rate, status == REPORT_FINISHED ? "0:00" : "unknown");
+        report_say(
+            "stopped %s with a checkpoint at step %lld of %lld; the same command resumes",
+            STOPS[sim->watch.stop], (long long)sim->step, (long long)sim->n_steps);
+    if (is_ours(drive))
+        record_end(drive, status, rate, elapsed);
     return status;
 }
 
@@ -396,6 +480,9 @@ int drive_run(const struct comm *comm, const struct options *options, const stru
         if (status == REPORT_FINISHED) {
             drive.first_step = drive.sim.step;
             drive.started = timer_now();
+            limit_time(&drive);
+            if (comm->rank == 0 && !drive.ended)
+                record_start(&drive);
             drive.look_at = drive.chores_at = drive.started;
             drive.line_at = drive.started + LINES_EVERY;
             if (drive.ended)
@@ -411,49 +498,4 @@ int drive_run(const struct comm *comm, const struct options *options, const stru
         free(drive.folder.path);
     free(drive.stop_path);
     return status;
-}
-
-/* ------------------------------------------------------------------------------- from
- * outside */
-
-int drive_status(const char *run)
-{
-    char *path = array_format("%s/status", run), line[256];
-    FILE *file = fopen(path, "r");
-    if (file == NULL)
-        report_error("%s cannot be read; name the folder of a run", path);
-    free(path);
-    if (file == NULL)
-        return REPORT_BAD_INPUT;
-    while (fgets(line, sizeof line, file) != NULL)
-        fputs(line, stdout);
-    fclose(file);
-    return REPORT_FINISHED;
-}
-
-int drive_stop(const char *run)
-{
-    char *status = array_format("%s/status", run), *stop = array_format("%s/stop", run);
-    char state[64] = "";
-    int result = REPORT_FINISHED;
-    FILE *file = fopen(status, "r");
-    if (file != NULL && fgets(state, sizeof state, file) == NULL)
-        state[0] = '\0';
-    if (file == NULL) {
-        report_error(
-            "%s is not a run's folder, or its run has not begun; name the folder of a run",
-            run);
-        result = REPORT_BAD_INPUT;
-    } else if (strncmp(state, "state: running", 14) != 0) {
-        report_say("nothing runs in %s: there is nothing to stop", run);
-    } else {
-        result = run_folder_write_file(stop, "stop\n");
-        if (result == REPORT_FINISHED)
-            report_say("asked the run in %s to stop with a checkpoint", run);
-    }
-    if (file != NULL)
-        fclose(file);
-    free(status);
-    free(stop);
-    return result;
 }

@@ -21,6 +21,7 @@
 #include "run/control.h"
 #include "run/drive.h"
 #include "run/options.h"
+#include "run/outside.h"
 #include "store/checkpoint.h"
 #include "store/file.h"
 #include "store/run_folder.h"
@@ -30,15 +31,17 @@ static const char USAGE[] =
     "usage: tremie COMMAND ...\n"
     "  run JOB.yaml [options]    run the job; the same command again resumes it\n"
     "  check JOB.yaml [options]  validate it; print scene, critical steps, cost, warnings\n"
-    "  status RUN                how a run stands, from its folder\n"
-    "  stop RUN                  ask a run on this machine to stop with a checkpoint\n"
+    "  status RUN [--json]       where a run stands, from its folder, while it runs\n"
+    "  stop RUN                  ask a run to stop with a checkpoint\n"
     "  reference                 print the reference page of job files\n"
     "  version                   print the version\n"
     "options:\n"
     "  --set KEY=VALUE           override a key of the job, for instance time.end=0.5\n"
     "  --out DIR                 the run folder (default: runs/ and the job's name)\n"
     "  --fresh                   start over; what is there is set aside\n"
+    "  --take-over               take the folder from another process that uses it\n"
     "  --restart FILE            start from this checkpoint\n"
+    "  --wall TIME               stop with a checkpoint before this wall time is over\n"
     "  --isa NAME                pair kernel: auto, generic, v2, v3 or v4\n"
     "exit status: 0 finished; 2 bad input; 3 unstable; 4 disk or file; 75 stopped with a "
     "checkpoint;\n"
@@ -48,7 +51,7 @@ static const char USAGE[] =
  * that is asked for; *has_state tells whether there is any to go on from.  NULL: none. */
 static char *text_as_used(const struct job *job, const struct options *options, bool *has_state)
 {
-    struct run_folder folder = {.lock = -1};
+    struct run_folder folder = {.path = NULL};
     struct checkpoint header;
     int64_t *steps = NULL;
     char *text = NULL, *why = NULL;
@@ -146,9 +149,9 @@ static int command(const struct comm *comm, const struct options *options)
     case OPTIONS_CHECK:
         return run_or_check(comm, options);
     case OPTIONS_STATUS:
-        return comm->rank == 0 ? drive_status(options->run) : REPORT_FINISHED;
+        return comm->rank == 0 ? outside_status(options->run, options->json) : REPORT_FINISHED;
     case OPTIONS_STOP:
-        return comm->rank == 0 ? drive_stop(options->run) : REPORT_FINISHED;
+        return comm->rank == 0 ? outside_stop(options->run) : REPORT_FINISHED;
     case OPTIONS_REFERENCE:
         if (comm->rank == 0) {
             char *page = job_reference_page();

@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/report.h"
+#include "run/wall_limit.h"
 
 static const struct {
     const char *name;
@@ -40,17 +41,35 @@ static bool read_isa(struct options *options, const char *name)
     return false;
 }
 
+static bool read_wall(struct options *options, const char *text)
+{
+    if (wall_limit_read(text, &options->wall))
+        return true;
+    report_error("--wall %s is no time above 0; something like 12:00:00, '30 min' or 43200 "
+                 "seconds is expected",
+                 text);
+    return false;
+}
+
 /* One option with its value; *used is how many words it took. */
 static bool read_option(struct options *options, const char *word, const char *value, int *used)
 {
     *used = 1;
-    if (strcmp(word, "--fresh") == 0) {
-        options->fresh = true;
-        return true;
+    const struct {
+        const char *name;
+        bool *given;
+    } flags[] = {{"--fresh", &options->fresh},
+                 {"--take-over", &options->take_over},
+                 {"--json", &options->json}};
+    for (size_t k = 0; k < sizeof flags / sizeof *flags; k++) {
+        if (strcmp(word, flags[k].name) == 0) {
+            *flags[k].given = true;
+            return true;
+        }
     }
-    static const char *const with_value[] = {"--set", "--out", "--restart", "--isa"};
+    static const char *const with_value[] = {"--set", "--out", "--restart", "--isa", "--wall"};
     int which = -1;
-    for (int k = 0; k < 4; k++)
+    for (int k = 0; k < 5; k++)
         which = strcmp(word, with_value[k]) == 0 ? k : which;
     if (which < 0) {
         report_error("unknown option %s; see tremie --help", word);
@@ -67,8 +86,10 @@ static bool read_option(struct options *options, const char *word, const char *v
         options->out = value;
     else if (which == 2)
         options->restart = value;
-    else
+    else if (which == 3)
         return read_isa(options, value);
+    else
+        return read_wall(options, value);
     return true;
 }
 

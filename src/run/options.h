@@ -25,7 +25,8 @@ struct options {
     const char *run;     /* status, stop */
     const char *out;     /* NULL: runs/NAME */
     const char *restart; /* NULL: the newest good checkpoint */
-    bool fresh;
+    double wall;         /* this process's wall time [s]; 0: not limited here */
+    bool fresh, take_over, json;
     enum isa isa;
     int n_overrides;
     struct job_override *overrides;

@@ -101,7 +101,7 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     removals_init(&sim->removals, job, &sim->bodies);
     observe_init(&sim->observe, sim);
     capture_init(&sim->capture, sim);
-    watch_init(&sim->watch, job->checkpoint.every_wall);
+    watch_init(&sim->watch, job);
 }
 
 /* Spheres are here in some order: complete them, choose kernels, distribute and search. */
@@ -333,7 +333,7 @@ static int write_series(struct simulation *sim, const struct run_folder *folder)
     const struct series *const tables[] = {&sim->observe.table, &sim->runtime.table,
                                            &sim->runtime.subdomains};
     runtime_subdomains(&sim->runtime, &sim->boxes, sim->step);
-    const int status = series_write_segment(path, sim->job->title, 3, tables);
+    const int status = series_write_segment(folder, path, sim->job->title, 3, tables);
     if (status == REPORT_FINISHED) {
         series_clear_rows(&sim->observe.table);
         series_clear_rows(&sim->runtime.table);
@@ -384,7 +384,8 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
     struct facet_contact_record *facets = NULL;
     struct observe_monitor *totals;
     int capacity = 0;
-    struct checkpoint checkpoint = {.step = sim->step,
+    struct checkpoint checkpoint = {.folder = folder,
+                                    .step = sim->step,
                                     .dt = sim->dt,
                                     .next_id = sim->next_id,
                                     .spheres = &sim->spheres,
@@ -437,7 +438,7 @@ int simulation_save(struct simulation *sim, const struct run_folder *folder,
     int status = simulation_save_series(sim, folder);
     if (status == REPORT_FINISHED)
         status = write_checkpoint(sim, folder, job_text);
-    if (status == REPORT_FINISHED && sim->comm->rank == 0)
+    if (status == REPORT_FINISHED && sim->comm->rank == 0 && !run_folder_is_lost(folder))
         run_folder_prune(folder, sim->job->checkpoint.keep);
     runtime_end(&sim->runtime, RUNTIME_CHECKPOINT);
     return status;

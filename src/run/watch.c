@@ -22,10 +22,10 @@ static const double ROUNDING_BORNE = 0.01;
 /* Share of the critical step that is advised when a step is too large. */
 static const double STEP_ADVISED = 0.5;
 
-void watch_init(struct watch *watch, double checkpoint_every)
+void watch_init(struct watch *watch, const struct job *job)
 {
-    *watch = (struct watch){.checkpoint_every = checkpoint_every,
-                            .checkpoint_at = timer_now() + checkpoint_every};
+    *watch = (struct watch){.failure = WATCH_FINE};
+    schedule_init(&watch->schedule, job, timer_now());
 }
 
 void watch_clear(struct watch *watch)
@@ -402,6 +402,16 @@ static double find_motion(struct watch *watch, const struct simulation *sim, dou
 /* --------------------------------------------------------------------------------------
  * agreement */
 
+/* This rank's reason to stop. */
+static enum watch_stop wish_to_stop(struct watch *watch, const struct simulation *sim)
+{
+    if (watch->stop_asked == WATCH_STOP_LOST)
+        return WATCH_STOP_LOST;
+    if (sim->comm->rank == 0 && schedule_is_over(&watch->schedule, timer_now()))
+        return WATCH_STOP_TIME;
+    return control_asked() != 0 ? WATCH_STOP_SIGNAL : watch->stop_asked;
+}
+
 void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], bool bad)
 {
     enum {
@@ -417,10 +427,8 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
         N_VALUES
     };
     const double pairs = sim->overlap_max, facets = sim->facets.overlap_max;
-    const bool due = sim->comm->rank == 0 && watch->checkpoint_every > 0.0 &&
-                     timer_now() > watch->checkpoint_at;
+    const bool due = sim->comm->rank == 0 && schedule_is_due(&watch->schedule, timer_now());
     const double motion = find_motion(watch, sim, spent[0]);
-    const bool stop = watch->stop_asked || control_asked() != 0;
     double values[N_VALUES] = {
         [SPENT_SEARCH] = spent[0],
         [SPENT_INNER] = spent[1],
@@ -429,7 +437,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
         [BAD] = bad ? 1.0 : 0.0,
         [RATE] = watch->rate,
         [ROUNDING] = watch->rounding,
-        [STOP] = stop ? 1.0 : 0.0,
+        [STOP] = (double)wish_to_stop(watch, sim),
         [CHECKPOINT] = due ? 1.0 : 0.0,
     };
     comm_max(sim->comm, values, N_VALUES);
@@ -438,7 +446,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
     watch->overlap = values[OVERLAP];
     watch->motion = values[MOTION];
     watch->rate = watch->rounding = 0.0;
-    watch->stop_agreed = watch->stop_agreed || values[STOP] > 0.0;
+    watch->stop = (enum watch_stop)values[STOP];
     watch->checkpoint_due = watch->checkpoint_due || values[CHECKPOINT] > 0.0;
     /* What fails later in this list often follows from what fails earlier. */
     if (values[ROUNDING] > 1.0)

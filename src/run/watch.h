@@ -15,7 +15,10 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "run/schedule.h"
+
 struct critical_step_sums;
+struct job;
 struct simulation;
 
 enum watch_failure {
@@ -31,6 +34,15 @@ enum watch_failure {
     WATCH_SUMS,   /* a total is beyond what exact sums hold */
 };
 
+/* Why a run stops before its end, with a checkpoint. */
+enum watch_stop {
+    WATCH_GO_ON,
+    WATCH_STOP_FILE, /* `tremie stop` asked for it */
+    WATCH_STOP_SIGNAL,
+    WATCH_STOP_TIME, /* its wall time is nearly over */
+    WATCH_STOP_LOST, /* another process has taken the run's folder */
+};
+
 /* Steps between looks at what only changes slowly.  They are part of the result: a run stops at
  * the same step on any ranks, whenever it searches or restarts. */
 enum {
@@ -40,13 +52,13 @@ enum {
 
 struct watch {
     enum watch_failure failure; /* the same on all ranks */
-    bool stop_asked;            /* on this rank, other than by a signal */
-    bool stop_agreed;           /* somebody asked to stop; the same on all ranks */
+    enum watch_stop stop_asked; /* on this rank, other than by a signal or the clock */
+    enum watch_stop stop;       /* why to stop before the end; the same on all ranks */
     bool checkpoint_due;        /* by rank 0's clock */
     double overlap;             /* largest of the last step, on any rank */
     double motion;              /* likewise, over radius, where it came near the limit */
-    double checkpoint_every, checkpoint_at; /* rank 0's clock [s]; every 0: never */
-    double allowance_most;                  /* largest allowance over radius on this rank [-] */
+    struct schedule schedule;   /* its clock is rank 0's */
+    double allowance_most;      /* largest allowance over radius on this rank [-] */
     /* This rank's findings at a step that is looked at, else 0: they go with the next
      * reduction. */
     double rate;     /* 1 / critical step of the present contacts, if it fails the run [1/s] */
@@ -58,7 +70,7 @@ struct watch {
     char what[160];
 };
 
-void watch_init(struct watch *watch, double checkpoint_every);
+void watch_init(struct watch *watch, const struct job *job);
 void watch_clear(struct watch *watch);
 
 /* Notes the allowances that a search has chosen.  Local. */

@@ -310,6 +310,7 @@ int checkpoint_write(const struct comm *comm, const char *path,
     }
     const struct content content = {checkpoint, totals, tables};
     const struct shared_file file = {
+        .folder = checkpoint->folder,
         .path = path,
         .what = "checkpoint",
         .remedy = "earlier ones are untouched: free some space or mend the disk, then run the "

@@ -38,6 +38,7 @@
 #include "store/notes.h"
 
 struct comm;
+struct run_folder;
 struct spheres;
 
 enum { CHECKPOINT_FORMAT_VERSION = 3, CHECKPOINT_NAME_SIZE = 64 };
@@ -48,9 +49,10 @@ struct checkpoint_monitor {
 };
 
 struct checkpoint {
-    int64_t step;    /* steps done: positions are those at step * dt */
-    double dt;       /* [s] */
-    int64_t next_id; /* ids below were given */
+    const struct run_folder *folder; /* the run's that writes it, NULL: nobody's */
+    int64_t step;                    /* steps done: positions are those at step * dt */
+    double dt;                       /* [s] */
+    int64_t next_id;                 /* ids below were given */
     char *title;
     char *job_text;          /* the job as used (job_write) */
     struct spheres *spheres; /* owned ones are state */

@@ -25,11 +25,12 @@ void file_survive_size_limit(void)
     signal(SIGXFSZ, SIG_IGN);
 }
 
-char *file_temporary(const char *path)
+char *file_temporary(const char *path, const char *tag)
 {
     const char *slash = strrchr(path, '/');
     const char *name = slash != NULL ? slash + 1 : path;
-    return array_format("%.*s.%s%s", (int)(name - path), path, name, TEMPORARY_END);
+    return array_format("%.*s.%s%s%s%s", (int)(name - path), path, name,
+                        tag[0] != '\0' ? "." : "", tag, TEMPORARY_END);
 }
 
 void file_remove_temporaries(const char *folder)
@@ -164,7 +165,7 @@ static int write_all(int descriptor, const char *bytes, size_t n)
 char *file_write(const char *path, const void *bytes, size_t n)
 {
     file_survive_size_limit();
-    char *temporary = file_temporary(path);
+    char *temporary = file_temporary(path, "");
     char *why = NULL;
     const int descriptor = open(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor < 0) {

@@ -15,9 +15,9 @@
  * full disk, not a signal that kills. */
 void file_survive_size_limit(void);
 
-/* The name, a hidden one, under which `path` is written before it is whole; the caller frees
- * it. */
-char *file_temporary(const char *path);
+/* The name, a hidden one, under which `path` is written before it is whole; the tag, "" where
+ * nobody else writes it, keeps writers apart.  The caller frees it. */
+char *file_temporary(const char *path, const char *tag);
 /* Removes such files from a folder, left by a run that was killed. */
 void file_remove_temporaries(const char *folder);
 

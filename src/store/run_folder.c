@@ -1,12 +1,6 @@
 /*
  * See run_folder.h.
  *
- * The lock is the kernel's (flock), so it ends with its process, however that ends; what is
- * written in the file only tells people who holds it.  Where the file system has no locks, the
- * process named there is looked for, which can tell only about this host.  A process that is
- * just being killed holds its lock for a moment more, so a taken lock is tried again for half a
- * second.
- *
  * A folder is looked through before anything in it is touched: one with other things than a
  * run's in it is somebody's folder, not ours.
  */
@@ -14,26 +8,23 @@
 
 #include <dirent.h>
 #include <errno.h>
-#include <fcntl.h>
 #include <inttypes.h>
-#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <sys/file.h>
 #include <sys/stat.h>
-#include <time.h>
 #include <unistd.h>
 
 #include "base/array.h"
 #include "base/report.h"
 #include "job/job.h"
 #include "store/file.h"
+#include "store/run_lock.h"
 
 /* What a run keeps in its folder and what moves aside when it starts over; beside these the
  * lock, older set_aside_N and hidden files may be there. */
-static const char *const RESULTS[] = {"job.yaml",  "checkpoints", "series",
-                                      "snapshots", "log",         "status"};
+static const char *const RESULTS[] = {"job.yaml", "checkpoints", "series", "snapshots",
+                                      "log",      "status",      "history"};
 enum { N_RESULTS = sizeof RESULTS / sizeof *RESULTS };
 
 static const char *const SUBFOLDERS[] = {"checkpoints", "series"};
@@ -106,77 +97,26 @@ static int look_at(const char *path, struct look *look)
 
 /* ------------------------------------------------------------------------------------- lock */
 
-/* Is the process that the lock's text names alive on this host? */
-static bool holder_lives(const char *text)
+const char *run_folder_tag(const struct run_folder *folder)
 {
-    long pid = 0;
-    char host[256] = "", here[256] = "";
-    gethostname(here, sizeof here - 1);
-    return sscanf(text, "process %ld on %255s", &pid, host) == 2 && pid > 0 &&
-           strcmp(host, here) == 0 && pid != (long)getpid() && kill((pid_t)pid, 0) == 0;
+    return folder != NULL ? folder->tag : "";
 }
 
-static void read_lock(int lock, char *text, size_t size)
+bool run_folder_is_lost(const struct run_folder *folder)
 {
-    const ssize_t n = pread(lock, text, size - 1, 0);
-    text[n > 0 ? n : 0] = '\0';
-    text[strcspn(text, "\n")] = '\0';
-}
-
-static void sign_lock(int lock)
-{
-    char host[256] = "", when[32] = "";
-    gethostname(host, sizeof host - 1);
-    const time_t now = time(NULL);
-    struct tm parts;
-    if (localtime_r(&now, &parts) != NULL)
-        strftime(when, sizeof when, "%Y-%m-%d %H:%M:%S", &parts);
-    char *text = array_format("process %ld on %s since %s\n", (long)getpid(), host, when);
-    /* It only informs: a full disk, which would spoil it, is met soon enough. */
-    if (ftruncate(lock, 0) == 0)
-        (void)!pwrite(lock, text, strlen(text), 0);
-    free(text);
-}
-
-/* 0 when the lock is ours now, else the error; EWOULDBLOCK: another one's. */
-static int try_lock(int lock)
-{
-    static const struct timespec pause = {.tv_nsec = 50000000};
-    enum { TRIES = 10 };
-    for (int k = 0; k < TRIES; k++) {
-        if (flock(lock, LOCK_EX | LOCK_NB) == 0)
-            return 0;
-        if (errno != EWOULDBLOCK && errno != EINTR)
-            return errno;
-        nanosleep(&pause, NULL);
-    }
-    return EWOULDBLOCK;
-}
-
-static int take_lock(struct run_folder *folder)
-{
-    char *path = path_in(folder->path, "lock"), text[512];
-    int status = REPORT_FINISHED;
-    const int lock = open(path, O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-    if (lock < 0) {
-        report_error("cannot write to %s: %s; name another folder with --out", folder->path,
-                     strerror(errno));
-        free(path);
-        return REPORT_STORAGE;
-    }
-    read_lock(lock, text, sizeof text);
-    const int error = try_lock(lock);
-    if (error == EWOULDBLOCK || (error != 0 && holder_lives(text))) {
-        report_error("%s is in use by %s; wait for it, or stop it with `tremie stop %s`",
-                     folder->path, text[0] != '\0' ? text : "another process", folder->path);
-        close(lock);
-        status = REPORT_BAD_INPUT;
-    } else {
-        sign_lock(lock);
-        folder->lock = lock;
-    }
-    free(path);
-    return status;
+    if (folder == NULL || folder->lock == NULL || run_lock_is_ours(folder->lock))
+        return false;
+    report_log_close(); /* the log is the other one's */
+    struct run_lock_owner owner;
+    if (run_lock_read(folder->path, &owner))
+        report_error("%s was taken over by process %" PRId64
+                     " on %s; this one leaves and writes nothing more",
+                     folder->path, owner.process, owner.host);
+    else
+        report_error("the lock of %s was taken away; this process leaves and writes nothing "
+                     "more, start the run again",
+                     folder->path);
+    return true;
 }
 
 /* ---------------------------------------------------------------------------- setting aside */
@@ -387,17 +327,20 @@ static int inspect(const char *path, bool fresh, struct look *look)
     return status;
 }
 
-int run_folder_open(struct run_folder *folder, const char *path, const char *job_text,
-                    bool fresh, bool *resumes)
+int run_folder_open(struct run_folder *folder, const char *path, const char *job_text, int how,
+                    bool *resumes)
 {
-    *folder = (struct run_folder){.path = array_string(path), .lock = -1};
+    const bool fresh = (how & RUN_FOLDER_FRESH) != 0;
+    *folder = (struct run_folder){.path = array_string(path)};
     *resumes = false;
     struct look look;
     int status = inspect(path, fresh, &look);
     if (status == REPORT_FINISHED && !look.exists)
         status = make_folder(path);
     if (status == REPORT_FINISHED)
-        status = take_lock(folder);
+        folder->lock = run_lock_take(path, (how & RUN_FOLDER_TAKE_OVER) != 0, &status);
+    if (folder->lock != NULL)
+        snprintf(folder->tag, sizeof folder->tag, "%s", run_lock_token(folder->lock));
     if (status == REPORT_FINISHED) /* once more: another run may have come and gone */
         status = inspect(path, fresh, &look);
     if (status == REPORT_FINISHED)
@@ -409,12 +352,9 @@ int run_folder_open(struct run_folder *folder, const char *path, const char *job
 
 void run_folder_close(struct run_folder *folder)
 {
-    if (folder->lock >= 0) {
-        (void)!ftruncate(folder->lock, 0); /* nobody holds it: nobody's name */
-        close(folder->lock);
-    }
+    run_lock_release(folder->lock);
     free(folder->path);
-    *folder = (struct run_folder){.lock = -1};
+    *folder = (struct run_folder){.path = NULL};
 }
 
 /* -------------------------------------------------------------------------------- its files */
@@ -465,8 +405,10 @@ void run_folder_prune(const struct run_folder *folder, int keep)
 
 void run_folder_status(const struct run_folder *folder, const char *text)
 {
+    if (run_folder_is_lost(folder))
+        return;
     char *path = path_in(folder->path, "status"),
-         *temporary = path_in(folder->path, ".status.part");
+         *temporary = file_temporary(path, folder->tag);
     FILE *stream = fopen(temporary, "we");
     if (stream != NULL) {
         const bool written = fputs(text, stream) >= 0;

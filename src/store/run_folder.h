@@ -1,9 +1,9 @@
 /*
- * The folder a run owns: RUN/job.yaml, checkpoints/, series/, snapshots/, log, status, lock,
- * stop (while somebody wants that) and what was moved out of the way, set_aside_N/.  Nothing is
- * written anywhere else, and a folder with other things in it is not touched.  All functions
- * act on one process (rank 0) and return a REPORT_ status with the reason said; the caller
- * broadcasts it.
+ * The folder a run owns: RUN/job.yaml, checkpoints/, series/, snapshots/, log, status, history,
+ * lock, stop (while somebody wants that) and what was moved out of the way, set_aside_N/.
+ * Nothing is written anywhere else, and a folder with other things in it is not touched.  All
+ * functions act on one process (rank 0) and return a REPORT_ status with the reason said; the
+ * caller broadcasts it.
  */
 #ifndef TREMIE_STORE_RUN_FOLDER_H
 #define TREMIE_STORE_RUN_FOLDER_H
@@ -11,23 +11,35 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "store/run_lock.h"
+
 struct run_folder {
     char *path;
-    int lock; /* file descriptor of the lock, -1 when not held */
+    struct run_lock *lock;    /* NULL when it is not held */
+    char tag[RUN_LOCK_TOKEN]; /* of files that are not whole yet; the same on all ranks */
 };
+
+enum { RUN_FOLDER_FRESH = 1, RUN_FOLDER_TAKE_OVER = 2 };
 
 /*
  * Makes or opens the folder for a job whose used text is job_text (job_write), taking the lock.
  * - New or empty folder: created with its subfolders, job.yaml written.
  * - Folder of the same job (job_difference finds nothing): job.yaml rewritten, *resumes true.
- * - `fresh`: what is there is moved into RUN/set_aside_N/ (said), then as new.
- * - Another job's folder, a folder with other things in it, a read-only place, a live lock:
- *   refused (REPORT_BAD_INPUT or REPORT_STORAGE) with the difference and the remedy, nothing
- *   changed.
+ * - RUN_FOLDER_FRESH in `how`: what is there is moved into RUN/set_aside_N/ (said), then as
+ *   new.
+ * - Another job's folder, a folder with other things in it, a read-only place, a live lock
+ *   (unless RUN_FOLDER_TAKE_OVER is in `how`): refused (REPORT_BAD_INPUT or REPORT_STORAGE)
+ *   with the difference and the remedy, nothing changed.
  */
-int run_folder_open(struct run_folder *folder, const char *path, const char *job_text,
-                    bool fresh, bool *resumes);
+int run_folder_open(struct run_folder *folder, const char *path, const char *job_text, int how,
+                    bool *resumes);
 void run_folder_close(struct run_folder *folder);
+
+/* Has another process taken the folder?  Then that was said, the log is closed, and nothing may
+ * be written any more.  To be asked before anything gets its final name; NULL is nobody's. */
+bool run_folder_is_lost(const struct run_folder *folder);
+/* What keeps temporary names of different owners apart. */
+const char *run_folder_tag(const struct run_folder *folder);
 
 /* RUN/checkpoints/step_000000050000.h5 and RUN/series/step_000000050000.h5; the caller
  * frees. */

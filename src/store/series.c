@@ -18,6 +18,7 @@
 #include "base/report.h"
 #include "store/file.h"
 #include "store/h5.h"
+#include "store/run_folder.h"
 
 static const char FORMAT[] = "tremie series";
 
@@ -169,21 +170,24 @@ static char *write_file(const char *path, const char *title, int n_tables,
     return h5.why;
 }
 
-int series_write_segment(const char *path, const char *title, int n_tables,
-                         const struct series *const *tables)
+int series_write_segment(const struct run_folder *folder, const char *path, const char *title,
+                         int n_tables, const struct series *const *tables)
 {
-    char *temporary = file_temporary(path);
+    if (run_folder_is_lost(folder))
+        return REPORT_STORAGE;
+    char *temporary = file_temporary(path, run_folder_tag(folder));
     char *why = write_file(temporary, title, n_tables, tables);
-    if (why == NULL)
+    const bool lost = why == NULL && run_folder_is_lost(folder);
+    if (why == NULL && !lost)
         why = file_publish(temporary, path);
-    if (why != NULL) {
+    if (why != NULL || lost)
         unlink(temporary);
+    if (why != NULL && !run_folder_is_lost(folder))
         report_error(
             "cannot write the series %s: %s; free some space or mend the disk, then run the "
             "same command again",
             path, why);
-    }
-    const int status = why != NULL ? REPORT_STORAGE : REPORT_FINISHED;
+    const int status = why != NULL || lost ? REPORT_STORAGE : REPORT_FINISHED;
     free(temporary);
     free(why);
     return status;

@@ -14,6 +14,8 @@
 
 #include <stdbool.h>
 
+struct run_folder;
+
 struct series_column {
     char *name, *unit, *help;
 };
@@ -38,10 +40,10 @@ void series_clear_rows(struct series *series);
 int series_column_index(const struct series *series, const char *name);
 
 /* Writes the rows of these tables as one segment (temporary name, fsync, rename).  On one
- * process.  `title` is kept as an attribute of /run.  Returns a REPORT_ status, the reason
- * said. */
-int series_write_segment(const char *path, const char *title, int n_tables,
-                         const struct series *const *tables);
+ * process.  `folder` is the run's, NULL: nobody's.  `title` is kept as an attribute of /run.
+ * Returns a REPORT_ status, the reason said. */
+int series_write_segment(const struct run_folder *folder, const char *path, const char *title,
+                         int n_tables, const struct series *const *tables);
 
 /* Reads one table of a run: the chain of segments of RUN/series in order.  A segment that
  * cannot be read is left out with a warning; a column that some segments lack is not-a-number

@@ -24,6 +24,7 @@
 #include "base/report.h"
 #include "store/file.h"
 #include "store/h5.h"
+#include "store/run_folder.h"
 #include "store/table.h"
 
 bool shared_file_all_well(const struct comm *comm, char **why)
@@ -45,9 +46,12 @@ bool shared_file_all_well(const struct comm *comm, char **why)
     return false;
 }
 
+/* On rank 0.  Who has lost the folder misses files that the new owner cleared away. */
 static void say_why(const struct shared_file *file, const char *why)
 {
-    report_error("cannot write the %s %s: %s; %s", file->what, file->path, why, file->remedy);
+    if (!run_folder_is_lost(file->folder))
+        report_error("cannot write the %s %s: %s; %s", file->what, file->path, why,
+                     file->remedy);
 }
 
 /* A new file in memory, for which there is room.  Local. */
@@ -117,15 +121,24 @@ static char *fill_in(const struct comm *comm, const struct shared_file *file,
     return file_sync(temporary);
 }
 
-static char *write_file(const struct comm *comm, const struct shared_file *file)
+/* Has the folder another owner now?  Collective. */
+static bool is_lost(const struct comm *comm, const struct shared_file *file)
 {
-    char *temporary = file_temporary(file->path);
+    return comm_agree(comm, comm->rank == 0 && run_folder_is_lost(file->folder)) != 0;
+}
+
+/* *lost: the folder has another owner, and nothing of this name was written. */
+static char *write_file(const struct comm *comm, const struct shared_file *file, bool *lost)
+{
+    char *temporary = file_temporary(file->path, run_folder_tag(file->folder));
     char *why = lay_out(comm, temporary, file);
     bool well = shared_file_all_well(comm, &why);
     if (well) {
         why = fill_in(comm, file, temporary);
         well = shared_file_all_well(comm, &why);
     }
+    *lost = well && is_lost(comm, file);
+    well = well && !*lost;
     if (well) {
         why = comm->rank == 0 ? file_publish(temporary, file->path) : NULL;
         well = shared_file_all_well(comm, &why);
@@ -139,10 +152,11 @@ static char *write_file(const struct comm *comm, const struct shared_file *file)
 int shared_file_write(const struct comm *comm, const struct shared_file *file)
 {
     file_survive_size_limit();
-    char *why = write_file(comm, file);
-    if (why == NULL)
-        return REPORT_FINISHED;
-    say_why(file, why);
+    bool lost = is_lost(comm, file);
+    char *why = lost ? NULL : write_file(comm, file, &lost);
+    if (why != NULL && comm->rank == 0)
+        say_why(file, why);
+    const int status = why != NULL || lost ? REPORT_STORAGE : REPORT_FINISHED;
     free(why);
-    return REPORT_STORAGE;
+    return status;
 }

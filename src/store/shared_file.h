@@ -13,9 +13,11 @@
 
 struct comm;
 struct h5;
+struct run_folder;
 struct table;
 
 struct shared_file {
+    const struct run_folder *folder; /* the run's, NULL: nobody's */
     const char *path;
     const char *what;   /* "checkpoint": for messages */
     const char *remedy; /* what follows the reason in them */
@@ -28,7 +30,8 @@ struct shared_file {
 };
 
 /* Returns REPORT_FINISHED, or REPORT_STORAGE with the reason said, the same on all ranks; then
- * no file of that name was touched.  lay_out is called on rank 0.  Collective. */
+ * no file of that name was touched.  A folder that was taken over is not written to.  lay_out
+ * is called on rank 0.  Collective. */
 int shared_file_write(const struct comm *comm, const struct shared_file *file);
 
 /* Did all go well on all ranks?  If not, rank 0 gets the first rank's reason, *why.

@@ -367,6 +367,7 @@ int snapshot_write(const struct comm *comm, const char *folder, struct snapshot 
     char *path = file_step_path(folder, snapshot->step);
     const struct table tables[2] = {snapshot->spheres, snapshot->contacts};
     const struct shared_file file = {
+        .folder = snapshot->folder,
         .path = path,
         .what = "snapshot",
         .remedy = "checkpoints are untouched: free some space or mend the disk, then run the "

@@ -28,6 +28,7 @@
 #include "store/table.h"
 
 struct comm;
+struct run_folder;
 
 /* The first three are always there, the others as bit k - SNAPSHOT_FIRST_CHOICE asks. */
 enum snapshot_field {
@@ -69,6 +70,7 @@ struct snapshot_body {
 };
 
 struct snapshot {
+    const struct run_folder *folder; /* the run's that writes it, NULL: nobody's */
     int64_t step;
     double dt; /* [s] */
     int64_t next_id;

@@ -112,7 +112,7 @@ static struct limit come_to_rest(struct rest *rest, int n_steps)
 {
     struct simulation sim;
     struct limit limit = {.rayleigh = 1e300};
-    const struct run_folder folder = {.path = rest->folder, .lock = -1};
+    const struct run_folder folder = {.path = rest->folder};
     simulation_create(&sim, rest->comm, &rest->job, ISA_AUTO);
     run_steps(&sim, n_steps);
     rest->job.damping *= 3.0; /* what has fallen comes to rest */

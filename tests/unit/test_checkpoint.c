@@ -524,7 +524,7 @@ TEST(what_cannot_be_written_leaves_the_old_file)
 {
     const struct comm comm = comm_world();
     char *path = scratch(&comm, "limited.h5"), *copy = scratch(&comm, "copy.h5");
-    char *temporary = file_temporary(path);
+    char *temporary = file_temporary(path, "");
     EXPECT(write_state(&comm, path) == REPORT_FINISHED);
     EXPECT(write_state(&comm, copy) == REPORT_FINISHED);
     struct rlimit was, small;

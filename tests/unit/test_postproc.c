@@ -374,7 +374,7 @@ static char *make_run(void)
     series_add_row(&series, (const double[]){0.5, 5.0});
     const struct series *tables[] = {&series};
     char *path = file_step_path(folder, 100);
-    EXPECT(series_write_segment(path, "a title", 1, tables) == REPORT_FINISHED);
+    EXPECT(series_write_segment(NULL, path, "a title", 1, tables) == REPORT_FINISHED);
     series_clear(&series);
     free(path);
     free(folder);

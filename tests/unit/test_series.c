@@ -45,7 +45,7 @@ static void write_rows(const char *run, int step, int begin, int end, bool cubes
     series_init(&empty, "runtime");
     series_add_column(&empty, "s", "nothing yet", "step");
     char *path = segment(run, step);
-    EXPECT(series_write_segment(path, "A title", 2,
+    EXPECT(series_write_segment(NULL, path, "A title", 2,
                                 (const struct series *const[]){&series, &empty}) ==
            REPORT_FINISHED);
     free(path);
@@ -183,7 +183,7 @@ TEST(unwritable_place)
     series_init(&series, "series");
     series_add_column(&series, "s", "time", "time");
     report_init(false);
-    EXPECT(series_write_segment("/nowhere/step_000000000001.h5", "", 1,
+    EXPECT(series_write_segment(NULL, "/nowhere/step_000000000001.h5", "", 1,
                                 (const struct series *const[]){&series}) == REPORT_STORAGE);
     report_init(true);
     series_clear(&series);
