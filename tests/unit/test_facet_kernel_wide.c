@@ -1,6 +1,6 @@
 /*
- * The facet kernel of eight lanes, compiled here for the processor that the tests are built for:
- * so it is tested where there are no vectors of eight.
+ * The facet kernel of eight lanes, compiled here for the processor that the tests are built
+ * for: so it is tested where there are no vectors of eight.
  */
 #define facet_kernel_blocks_v4 wide_blocks /* beside the library's own */
 #define KERNEL_ISA             4
