@@ -133,10 +133,12 @@ lint:
 ##  make install      install programs, material library and jobs below PREFIX (PREFIX=/usr/local)
 install: all
 	install -d $(DESTDIR)$(PREFIX)/bin $(DESTDIR)$(PREFIX)/share/tremie/config \
-	    $(DESTDIR)$(PREFIX)/share/tremie/jobs
+	    $(DESTDIR)$(PREFIX)/share/tremie/jobs/batch
 	install -m 755 $(programs) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(wildcard config/*.yaml) $(DESTDIR)$(PREFIX)/share/tremie/config
-	install -m 644 $(wildcard jobs/*.yaml jobs/*.csv jobs/*.md) $(DESTDIR)$(PREFIX)/share/tremie/jobs
+	install -m 644 $(wildcard jobs/*.yaml jobs/*.csv jobs/*.stl jobs/*.md) $(DESTDIR)$(PREFIX)/share/tremie/jobs
+	install -m 755 $(wildcard jobs/batch/*.sh) $(DESTDIR)$(PREFIX)/share/tremie/jobs/batch
+	install -m 644 jobs/batch/README.md $(DESTDIR)$(PREFIX)/share/tremie/jobs/batch
 
 ##  make clean        remove everything that was built (runs/ stays)
 clean:
