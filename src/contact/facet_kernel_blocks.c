@@ -382,7 +382,7 @@ LANES_INLINE bool meet_face(const struct face *face, const struct drift *drift, 
     lanes height, held = lanes_all(0.0);
     lanes_mask touches = find_touching(face, block, &height);
     if (!exists)
-        touches = lanes_all(0.0) > lanes_all(0.0);
+        touches = (lanes_mask){0};
     for (int l = 0; l < WIDTH; l++)
         held[l] = block->contact[l]->history[CONTACT_RADIUS_LANE];
     if (!lanes_any(touches | (held > lanes_all(0.0))))
