@@ -158,7 +158,7 @@ static void fill_levels(struct candidates *candidates, const struct spheres *sph
     candidates->members = array_allocate_rows((size_t)spheres->n_all, sizeof(int));
     candidates->tags = array_allocate_rows((size_t)spheres->n_all, sizeof(int));
     for (int i = 0; i < spheres->n_all; i++) {
-        const double reach = sphere_radius(spheres, i) + spheres->allowance[i];
+        const double reach = sphere_reach(spheres, i);
         least = reach < least ? reach : least;
     }
     int n_filed = 0;
@@ -168,7 +168,7 @@ static void fill_levels(struct candidates *candidates, const struct spheres *sph
         int n = 0;
         double reach_max = 0.0;
         for (int i = 0; i < spheres->n_all && n_filed < spheres->n_all; i++) {
-            const double reach = sphere_radius(spheres, i) + spheres->allowance[i];
+            const double reach = sphere_reach(spheres, i);
             if (!(reach >= bound_before && reach < bound))
                 continue;
             candidates->members[n] = i;

@@ -74,11 +74,6 @@ int cell_grid_along(const struct cell_grid *grid, int k, double x)
     return cell < (double)grid->size[k] - 1.0 ? (int)cell : grid->size[k] - 1;
 }
 
-static double reach_of(const struct spheres *spheres, int i)
-{
-    return sphere_radius(spheres, i) + spheres->allowance[i];
-}
-
 void cell_grid_fill(struct cell_grid *grid, const struct spheres *spheres, int n,
                     const int *members, const int *tags, double width)
 {
@@ -88,7 +83,7 @@ void cell_grid_fill(struct cell_grid *grid, const struct spheres *spheres, int n
     grid->reach_max = 0.0;
     for (int p = 0; p < n; p++) {
         const double *x = sphere_position(spheres, members[p]);
-        const double reach = reach_of(spheres, members[p]);
+        const double reach = sphere_reach(spheres, members[p]);
         for (int k = 0; k < 3; k++) {
             low[k] = p > 0 && low[k] < x[k] ? low[k] : x[k];
             high[k] = p > 0 && high[k] > x[k] ? high[k] : x[k];
@@ -116,7 +111,7 @@ void cell_grid_fill(struct cell_grid *grid, const struct spheres *spheres, int n
         grid->x[place] = x[0];
         grid->y[place] = x[1];
         grid->z[place] = x[2];
-        grid->reach[place] = reach_of(spheres, members[p]);
+        grid->reach[place] = sphere_reach(spheres, members[p]);
         grid->tag[place] = tags[p];
         grid->cell[place] = grid->scratch[p];
     }

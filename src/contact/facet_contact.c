@@ -256,7 +256,7 @@ static void find_across(struct facet_work *work, int b, const struct mesh *mesh,
 static void find_features(struct facet_work *work, int b, const struct mesh *mesh,
                           const struct spheres *spheres, int i, double body_allowance)
 {
-    const double reach = sphere_radius(spheres, i) + spheres->allowance[i] + body_allowance;
+    const double reach = sphere_reach(spheres, i) + body_allowance;
     facet_tree_query(&work->trees[b], mesh, vec3_of(sphere_position(spheres, i)), reach,
                      &work->found);
     if (spheres->periodic.any)

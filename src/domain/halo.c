@@ -46,11 +46,6 @@ void halo_clear(struct halo *halo)
     *halo = (struct halo){0};
 }
 
-static double reach_of(const struct spheres *spheres, int i)
-{
-    return sphere_radius(spheres, i) + spheres->allowance[i];
-}
-
 static int level_of(double reach, double least)
 {
     int level = 0;
@@ -67,12 +62,12 @@ static struct rank_boxes own_boxes(const struct comm *comm, const struct spheres
             (struct level_box){{1e300, 1e300, 1e300}, {-1e300, -1e300, -1e300}, 0.0};
     double least = 1e300;
     for (int i = 0; i < spheres->n_owned; i++) {
-        const double reach = reach_of(spheres, i);
+        const double reach = sphere_reach(spheres, i);
         least = reach < least ? reach : least;
     }
     comm_min(comm, &least, 1);
     for (int i = 0; i < spheres->n_owned; i++) {
-        const double reach = reach_of(spheres, i), *x = sphere_position(spheres, i);
+        const double reach = sphere_reach(spheres, i), *x = sphere_position(spheres, i);
         struct level_box *box = &boxes.level[level_of(reach, least)];
         for (int k = 0; k < 3; k++) {
             box->low[k] = x[k] < box->low[k] ? x[k] : box->low[k];
@@ -168,7 +163,7 @@ static void choose_plain(struct halo_peer *peer, const struct spheres *spheres,
                          const struct rank_boxes *there)
 {
     for (int i = 0; i < spheres->n_owned; i++) {
-        if (is_needed(sphere_position(spheres, i), reach_of(spheres, i), there))
+        if (is_needed(sphere_position(spheres, i), sphere_reach(spheres, i), there))
             add_send(peer, i, 0);
     }
     peer->n_plain = peer->n_send;
@@ -181,7 +176,7 @@ static void choose_images(struct halo_peer *peer, const struct spheres *spheres,
 {
     const struct level_box near = around(there);
     for (int i = 0; i < spheres->n_owned; i++) {
-        const double *x = sphere_position(spheres, i), reach = reach_of(spheres, i);
+        const double *x = sphere_position(spheres, i), reach = sphere_reach(spheres, i);
         const double image[3] = {x[0] + shift[0], x[1] + shift[1], x[2] + shift[2]};
         if (meets(&near, image, reach) && is_needed(image, reach, there))
             add_send(peer, i, code);

@@ -95,6 +95,12 @@ static inline double sphere_radius(const struct spheres *spheres, int i)
 {
     return spheres->motion[i].lane[3];
 }
+/* Radius and allowance: how far from its place a sphere may touch something before the next
+ * search [m]. */
+static inline double sphere_reach(const struct spheres *spheres, int i)
+{
+    return sphere_radius(spheres, i) + spheres->allowance[i];
+}
 static inline double *sphere_velocity(const struct spheres *spheres, int i)
 {
     return spheres->motion[i].lane + 4;
