@@ -364,6 +364,7 @@ static void merge_loads(struct facet_contacts *facets, int b)
         lanes_exact_merge(&step->sums[3 + x], step->n_terms, &load->torque[x]);
     }
     lanes_exact_merge(&step->sums[6], step->n_terms, &load->work);
+    lanes_exact_merge(&step->sums[7], step->n_terms, &load->lost);
     load->force[0].overflow += step->n_overflow;
     step->n_terms = step->n_overflow = 0;
 }
@@ -658,7 +659,6 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
         .motion = spheres->motion,
         .spin = spheres->spin,
         .force = spheres->force,
-        .dissipated_tangential = spheres->dissipated_tangential,
         .material = spheres->material,
         .n_materials = materials->n,
         .pairs = materials->pairs,

@@ -57,6 +57,7 @@ struct body_load {
     struct exact_sum force[3];  /* [N], summed over steps */
     struct exact_sum torque[3]; /* about the origin [N m], summed over steps */
     struct exact_sum work;      /* of the body's motion on spheres [J], since step 0 */
+    struct exact_sum lost;      /* by the tangential law of its contacts [J], since step 0 */
 };
 
 struct facet_contacts {

@@ -27,8 +27,9 @@ enum {
     FACET_KERNEL_BATCH = 128,
     FACET_KERNEL_PAD = 8, /* runs are multiples of this */
     FACET_KERNEL_AHEAD =
-        32,                /* contacts behind a run's last that must be there, to be fetched */
-    FACET_KERNEL_SUMS = 7, /* force on a body (3) [N], torque (3) [N m], work [J] */
+        32, /* contacts behind a run's last that must be there, to be fetched */
+    FACET_KERNEL_SUMS =
+        8, /* force on a body (3) [N], torque (3) [N m], work, lost by the law [J] */
 };
 
 /* What a body feels in a step, while it is being summed. */
@@ -64,12 +65,10 @@ struct facet_kernel_run {
 };
 
 /* What a kernel works on: reads motion, spin and material, adds to the spheres' force rows
- * (with the ledger on also what friction and damping dissipate, in lanes 3 and 7, and to
- * dissipated_tangential), to loads; brings history to the present and notes overlaps. */
+ * (with the ledger on also what friction and damping dissipate, in lanes 3 and 7), to loads; brings history to the present and notes overlaps. */
 struct facet_kernel_work {
     const struct sphere_row *motion, *spin;
     struct sphere_row *force;
-    double *dissipated_tangential; /* [J] */
     const int32_t *material;
     int n_materials;
     const struct material_pair *pairs; /* n_materials x n_materials */

@@ -149,21 +149,23 @@ LANES_INLINE void add_term(const struct block *block, int s, const lanes_mask li
             block->load[l]->sums[s].limb[k][l] += limbs[k][l];
 }
 
-/* Gives the bodies the force on them, its torque (`twist` besides the force's) and the work of
- * their motion.  `force` becomes what the exact sums took, so that the spheres' is the opposite
+/* Gives the bodies the force on them, its torque (`twist` besides the force's), the work of
+ * their motion and what the tangential law has lost.  `force` becomes what the exact sums took, so that the spheres' is the opposite
  * to the last bit. */
 LANES_INLINE void load_bodies(const struct facet_kernel_work *work, const struct block *block,
-                              lanes force[3], const lanes twist[3])
+                              lanes force[3], const lanes twist[3], const lanes *lost)
 {
     const lanes dt = lanes_all(work->dt), none = lanes_all(0.0);
     const lanes path[3] = {dt * block->wall[0], dt * block->wall[1], dt * block->wall[2]};
     const lanes turn[3] = {dt * block->turns[0], dt * block->turns[1], dt * block->turns[2]};
     const lanes reach = 1.0 + size_of(block->point) + size_of(path);
-    const lanes_mask fits = size_of(force) * reach + size_of(twist) * (1.0 + size_of(turn)) <
-                            lanes_all(LANES_EXACT_LIMIT);
+    lanes_mask fits = size_of(force) * reach + size_of(twist) * (1.0 + size_of(turn)) <
+                      lanes_all(LANES_EXACT_LIMIT);
     lanes_mask limbs[3];
     lanes torque[3];
 
+    if (lost != NULL)
+        fits &= lanes_exact_fits(*lost);
     if (lanes_any(~fits)) /* something has run away: take note of it */
         for (int l = 0; l < WIDTH; l++)
             block->load[l]->n_overflow += fits[l] == 0;
@@ -182,6 +184,10 @@ LANES_INLINE void load_bodies(const struct facet_kernel_work *work, const struct
         const lanes done = (none - contact_law_dot(force, path)) - contact_law_dot(twist, turn);
         lanes_exact_round(lanes_keep(fits, done), limbs);
         add_term(block, 6, limbs);
+    }
+    if (lost != NULL) {
+        lanes_exact_round(lanes_keep(fits, *lost), limbs);
+        add_term(block, 7, limbs);
     }
     for (int l = 0; l < WIDTH; l++)
         block->load[l]->n_terms++;
@@ -222,16 +228,13 @@ LANES_INLINE lanes press(const struct facet_kernel_work *work, const struct bloc
         twist[x] = choice.full ? result.torque[x] : none;
         rows[4 + x] = -block->motion[3] * turn[x] - twist[x];
     }
-    load_bodies(work, block, force, twist);
+    load_bodies(work, block, force, twist, choice.ledger ? &result.lost_law : NULL);
 #pragma GCC unroll 3
     for (int x = 0; x < 3; x++)
         rows[x] = -force[x];
     rows[3] = choice.ledger ? result.lost_friction : none;
     rows[7] = choice.ledger ? result.lost_damping : none;
     add_rows(work, block, rows);
-    if (choice.ledger)
-        for (int l = 0; l < WIDTH; l++)
-            work->dissipated_tangential[block->sphere[l]] += result.lost_law[l];
     return lanes_where(relative > deepest, relative, deepest);
 }
 

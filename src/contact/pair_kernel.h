@@ -12,6 +12,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/exact_sum.h"
 #include "base/isa.h"
 #include "contact/contact_set.h"
 #include "model/material.h"
@@ -24,13 +25,12 @@ enum { PAIR_KERNEL_AHEAD = 128 };
 /*
  * What a kernel works on.  Pairs k = 0 .. n_padded - 1, n_padded a multiple of CONTACT_PAD;
  * padding pairs the two dummies, which lie apart.  Indices reach over owned spheres, ghosts and
- * dummies, first != second, and so do all arrays that they index, dissipated_tangential
- * included.
+ * dummies, first != second, and so do all arrays that they index.
  *
  * Read: motion, spin, material, pairs.  Added to: the force rows of both spheres (force,
  * torque, and with the ledger on half of what friction and damping dissipate in spare lanes 3
- * and 7); with the ledger on dissipated_tangential of the first.  Brought to the present:
- * history.  Force rows must not hold -0: a pair that does not touch adds zeros of either sign.
+ * and 7); with the ledger on what the tangential law loses, by pairs whose first is owned.
+ * Brought to the present: history.  Force rows must not hold -0: a pair that does not touch adds zeros of either sign.
  * A pair that touched in the last step must still be listed in this one, or the ledger misses
  * the end of the contact.
  */
@@ -43,9 +43,10 @@ struct pair_kernel_work {
     const int32_t *material; /* of each sphere */
     int n_materials;
     const struct material_pair *pairs; /* n_materials x n_materials */
-    double *dissipated_tangential;     /* of each sphere [J] */
-    double dt;                         /* [s] */
-    double overlap_max;                /* out: largest overlap (1/R_i + 1/R_j) / 2 [-] */
+    int n_owned;                       /* spheres below this */
+    struct exact_sum *lost; /* by the tangential law [J]; without the ledger unused */
+    double dt;              /* [s] */
+    double overlap_max;     /* out: largest overlap (1/R_i + 1/R_j) / 2 [-] */
 };
 
 struct pair_kernel {

@@ -19,6 +19,7 @@
 
 #include "contact/pair_kernel.h"
 #include "physics/contact_law.h"
+#include "physics/lanes_exact.h"
 #include "physics/lanes_rows.h"
 
 enum {
@@ -208,6 +209,38 @@ LANES_INLINE struct contact_law_constants constants_of_each(const struct pair_ke
     return contact_law_constants_of_each(pairs, full);
 }
 
+/* What the tangential law has lost so far in this step. */
+struct losses {
+    struct lanes_exact sum;
+    int64_t n_terms; /* a lane, in the sum */
+    int64_t n_overflow;
+};
+
+/* Brings what is summed in lanes to the total, before it fills up. */
+static void losses_merge(struct losses *losses, struct exact_sum *total)
+{
+    lanes_exact_merge(&losses->sum, losses->n_terms, total);
+    total->overflow += losses->n_overflow;
+    losses->n_terms = losses->n_overflow = 0;
+}
+
+/* Counts what pairs lost; a pair that a cut divides is counted by the owner of its first. */
+LANES_INLINE void block_lose(const struct pair_kernel_work *work, int k, lanes lost,
+                             struct losses *losses)
+{
+    const lanes own = lanes_keep(lanes_below(work->first + k, work->n_owned), lost);
+    const lanes_mask fits = lanes_exact_fits(own);
+    lanes_mask limbs[3];
+
+    if (lanes_any(~fits)) /* something has run away: take note of it */
+        for (int l = 0; l < WIDTH; l++)
+            losses->n_overflow += fits[l] == 0;
+    lanes_exact_round(lanes_keep(fits, own), limbs);
+    lanes_exact_add(&losses->sum, limbs);
+    if (++losses->n_terms == LANES_EXACT_TERMS)
+        losses_merge(losses, work->lost);
+}
+
 /* Compiled for each choice, so that what is not asked for costs nothing.  Works on a copy,
  * which the compiler knows that no row overlaps. */
 LANES_INLINE void apply(struct pair_kernel_work *given, bool uniform,
@@ -216,6 +249,7 @@ LANES_INLINE void apply(struct pair_kernel_work *given, bool uniform,
     const struct pair_kernel_work own = *given, *work = &own;
     const lanes dt = lanes_all(work->dt);
     struct contact_law_constants constants;
+    struct losses losses = {.n_terms = 0};
     lanes deepest = lanes_all(0.0);
 
     given->overlap_max = 0.0;
@@ -245,12 +279,12 @@ LANES_INLINE void apply(struct pair_kernel_work *given, bool uniform,
         block_rows(&block, &meeting, &result, choice, first, second);
         block_add(work, &block, first, second);
         if (choice.ledger)
-#pragma GCC unroll 8
-            for (int l = 0; l < WIDTH; l++)
-                work->dissipated_tangential[work->first[k + l]] += result.lost_law[l];
+            block_lose(work, k, result.lost_law, &losses);
         const lanes relative = meeting.overlap * meeting.inverse_radius;
         deepest = lanes_where(relative > deepest, relative, deepest);
     }
+    if (choice.ledger)
+        losses_merge(&losses, work->lost);
     for (int l = 0; l < WIDTH; l++)
         given->overlap_max =
             0.5 * deepest[l] > given->overlap_max ? 0.5 * deepest[l] : given->overlap_max;

@@ -69,7 +69,6 @@ static const char *const snapshot_fields[] = {"velocity",
                                               "group",
                                               "dissipated_friction",
                                               "dissipated_damping",
-                                              "dissipated_tangential",
                                               NULL};
 static const char *const compressions[] = {"none", "lossless", NULL};
 static const char *const precisions[] = {"double", "single", NULL};

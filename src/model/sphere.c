@@ -42,9 +42,6 @@ const struct field sphere_fields[SPHERE_N_FIELDS] = {
     [SPHERE_DISSIPATED_DAMPING] = {"dissipated_damping", "J",
                                    "turned into heat by contact damping since birth",
                                    FIELD_DOUBLE, 1, FIELD_SAVED},
-    [SPHERE_DISSIPATED_TANGENTIAL] = {"dissipated_tangential", "J",
-                                      "lost by the tangential law on unloading since birth",
-                                      FIELD_DOUBLE, 1, FIELD_SAVED},
     [SPHERE_CAUGHT] =
         {"caught", "1",
          "1 + the removal, counted from 0 in the order of the job, that is to take "
@@ -71,7 +68,6 @@ void spheres_clear(struct spheres *spheres)
     free(spheres->sides);
     free(spheres->dissipated_friction);
     free(spheres->dissipated_damping);
-    free(spheres->dissipated_tangential);
     free(spheres->caught);
     free(spheres->allowance);
     free(spheres->inverse_allowance);
@@ -100,7 +96,6 @@ void spheres_reserve(struct spheres *spheres, int n)
     RESIZE(sides);
     RESIZE(dissipated_friction);
     RESIZE(dissipated_damping);
-    RESIZE(dissipated_tangential);
     RESIZE(caught);
     RESIZE(allowance);
     RESIZE(inverse_allowance);
@@ -138,8 +133,6 @@ struct field_view sphere_view(const struct spheres *spheres, int field)
         return VIEW(spheres->dissipated_friction);
     case SPHERE_DISSIPATED_DAMPING:
         return VIEW(spheres->dissipated_damping);
-    case SPHERE_DISSIPATED_TANGENTIAL:
-        return VIEW(spheres->dissipated_tangential);
     case SPHERE_CAUGHT:
     default:
         return VIEW(spheres->caught);
@@ -176,7 +169,6 @@ void spheres_pad(struct spheres *spheres)
         spheres->sides[i] = 0;
         spheres->dissipated_friction[i] = 0.0;
         spheres->dissipated_damping[i] = 0.0;
-        spheres->dissipated_tangential[i] = 0.0;
         spheres->caught[i] = 0;
         spheres->allowance[i] = 0.0;
         spheres->inverse_allowance[i][0] = spheres->inverse_allowance[i][1] = 0.0;

@@ -27,7 +27,7 @@ struct sphere_row {
     double lane[8];
 } __attribute__((aligned(64)));
 
-enum { SPHERE_N_FIELDS = 13, SPHERE_DUMMIES = 2 };
+enum { SPHERE_N_FIELDS = 12, SPHERE_DUMMIES = 2 };
 
 /* State, in the order of sphere_fields[]. */
 enum sphere_field {
@@ -42,7 +42,6 @@ enum sphere_field {
     SPHERE_SIDES,
     SPHERE_DISSIPATED_FRICTION,
     SPHERE_DISSIPATED_DAMPING,
-    SPHERE_DISSIPATED_TANGENTIAL,
     SPHERE_CAUGHT,
 };
 
@@ -55,10 +54,9 @@ struct spheres {
     int64_t *order_cell; /* cell of the order grid at birth or at the last renewal */
     int32_t *material;
     int32_t *group;
-    int64_t *sides;                /* bit s: on the forward side of section s */
-    double *dissipated_friction;   /* [J] since birth */
-    double *dissipated_damping;    /* [J] */
-    double *dissipated_tangential; /* [J] lost by the tangential law on unloading */
+    int64_t *sides;              /* bit s: on the forward side of section s */
+    double *dissipated_friction; /* [J] since birth */
+    double *dissipated_damping;  /* [J] */
     int32_t *caught; /* 1 + the removal that is to take it out; 0: none (run/removal) */
     /* Not state: bookkeeping of searches. */
     double *allowance;              /* how far this sphere may go before a search is due [m] */

@@ -21,6 +21,7 @@
 #include <math.h>
 #include <stdbool.h>
 #include <stdint.h>
+#include <string.h>
 
 #if defined __x86_64__
 #include <immintrin.h>
@@ -87,6 +88,15 @@ LANES_INLINE lanes lanes_load(const double *from)
 LANES_INLINE void lanes_store(double *to, lanes x)
 {
     *(lanes_in_memory *)to = x;
+}
+
+/* Which of as many indices as there are lanes are less. */
+LANES_INLINE lanes_mask lanes_below(const int *indices, int limit)
+{
+    typedef int numbers __attribute__((vector_size(4 * LANES_WIDTH)));
+    numbers own;
+    memcpy(&own, indices, sizeof own);
+    return __builtin_convertvector(own, lanes_mask) < (limit - (lanes_mask){0});
 }
 
 LANES_INLINE lanes lanes_sqrt(lanes x)

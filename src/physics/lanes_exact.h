@@ -40,6 +40,11 @@ static inline void lanes_exact_merge(struct lanes_exact *sum, int64_t n_terms,
 }
 
 #if LANES_WIDTH > 1
+LANES_INLINE lanes_mask lanes_exact_fits(lanes term)
+{
+    return (lanes)((lanes_mask)term & INT64_MAX) < lanes_all(LANES_EXACT_LIMIT);
+}
+
 /* A term in limbs; returns it as rounded. */
 LANES_INLINE lanes lanes_exact_round(lanes term, lanes_mask limbs[3])
 {

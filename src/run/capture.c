@@ -76,7 +76,6 @@ static void put_sphere(const struct simulation *sim, struct table *table, int i)
         [SNAPSHOT_GROUP] = &spheres->group[i],
         [SNAPSHOT_DISSIPATED_FRICTION] = &spheres->dissipated_friction[i],
         [SNAPSHOT_DISSIPATED_DAMPING] = &spheres->dissipated_damping[i],
-        [SNAPSHOT_DISSIPATED_TANGENTIAL] = &spheres->dissipated_tangential[i],
     };
     const int fields = sim->job->output.snapshots.fields;
     for (int f = 0, column = 0; f < SNAPSHOT_N_FIELDS; f++)

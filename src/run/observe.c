@@ -186,7 +186,6 @@ static double sphere_energies(const struct simulation *sim, int i, double energi
     if (sim->job->energy_ledger) /* half of what background damping takes in this step */
         energies[ENERGY_DAMPING] += sim->job->damping * sim->dt *
                                     (energies[ENERGY_TRANSLATION] + energies[ENERGY_ROTATION]);
-    energies[ENERGY_TANGENTIAL] = sim->spheres.dissipated_tangential[i];
     return speed2;
 }
 
@@ -294,7 +293,7 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
         const double speed2 = sphere_energies(sim, i, own);
         speed2_max = speed2 > speed2_max ? speed2 : speed2_max;
         for (int e = 0; e < N_ENERGIES; e++) {
-            if (e != ENERGY_ELASTIC && e != ENERGY_WORK)
+            if (e != ENERGY_ELASTIC && e != ENERGY_WORK && e != ENERGY_TANGENTIAL)
                 exact_sum_add(&sums[e], own[e]);
         }
     }
@@ -311,10 +310,12 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
         exact_sum_merge(&sums[ENERGY_WORK], &sim->observe.work_before[b]);
         exact_sum_merge(&sums[ENERGY_WORK], &sim->facets.loads[b].work);
     }
-    static const int removed[] = {OBSERVE_REMOVED_FRICTION, OBSERVE_REMOVED_DAMPING,
-                                  OBSERVE_REMOVED_TANGENTIAL};
-    for (int k = 0; k < 3; k++)
-        exact_sum_merge(&sums[ENERGY_FRICTION + k], &sim->observe.totals[removed[k]]);
+    const struct exact_sum *totals = sim->observe.totals;
+    exact_sum_merge(&sums[ENERGY_FRICTION], &totals[OBSERVE_REMOVED_FRICTION]);
+    exact_sum_merge(&sums[ENERGY_DAMPING], &totals[OBSERVE_REMOVED_DAMPING]);
+    exact_sum_merge(&sums[ENERGY_TANGENTIAL], &totals[OBSERVE_TANGENTIAL]);
+    for (int b = 0; b < sim->facets.n_bodies; b++)
+        exact_sum_merge(&sums[ENERGY_TANGENTIAL], &sim->facets.loads[b].lost);
     exact_sum_reduce(sim->comm, sums, N_ENERGIES);
     comm_sum_int(sim->comm, counts, 3);
     comm_max(sim->comm, &speed2_max, 1);
@@ -552,7 +553,6 @@ void observe_removed(struct simulation *sim, int i)
                                                        energies[ENERGY_POTENTIAL]);
     exact_sum_add(&totals[OBSERVE_REMOVED_FRICTION], energies[ENERGY_FRICTION]);
     exact_sum_add(&totals[OBSERVE_REMOVED_DAMPING], energies[ENERGY_DAMPING]);
-    exact_sum_add(&totals[OBSERVE_REMOVED_TANGENTIAL], energies[ENERGY_TANGENTIAL]);
 }
 
 /* Background damping takes the whole of this step: half of it stands in the energies now. */
@@ -591,10 +591,9 @@ static void add_tally(struct observe_monitor **monitors, int *n, int *capacity,
 int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
 {
     static const char *const totals[OBSERVE_N_TOTALS] = {
-        "energy_start",       "removed_energy", "removed_friction", "removed_damping",
-        "removed_tangential", "last_step",      "turned",           "overlap",
-        "inserted_energy",    "crossed_x",      "crossed_y",        "crossed_z",
-        "gravity_work",
+        "energy_start", "removed_energy", "removed_friction", "removed_damping", "tangential",
+        "last_step",    "turned",         "overlap",          "inserted_energy", "crossed_x",
+        "crossed_y",    "crossed_z",      "gravity_work",
     };
     static const char *const loads[] = {"force_x",  "force_y",  "force_z",
                                         "torque_x", "torque_y", "torque_z"};
@@ -610,6 +609,7 @@ int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
             add_monitor(monitors, &n, &capacity, k < 3 ? &load->force[k] : &load->torque[k - 3],
                         owner, loads[k]);
         add_monitor(monitors, &n, &capacity, &load->work, owner, "work");
+        add_monitor(monitors, &n, &capacity, &load->lost, owner, "tangential");
     }
     for (int s = 0; s < sim->sections.n; s++) {
         const struct tally *passed = sim->sections.counts[s].passed;

@@ -23,7 +23,7 @@ enum observe_total {
     OBSERVE_REMOVED_ENERGY,   /* carried away by spheres that left [J] */
     OBSERVE_REMOVED_FRICTION, /* dissipated by them before they left [J] */
     OBSERVE_REMOVED_DAMPING,
-    OBSERVE_REMOVED_TANGENTIAL,
+    OBSERVE_TANGENTIAL,      /* lost by the tangential law between spheres [J] */
     OBSERVE_LAST_STEP,       /* step of the last sample, plus one; on rank 0 */
     OBSERVE_TURNED,          /* largest energy turned over so far [J]; on rank 0 */
     OBSERVE_OVERLAP,         /* largest overlap/radius since then, times 2^40; on rank 0 */

@@ -138,7 +138,6 @@ void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
     spheres->group[i] = group;
     spheres->dissipated_friction[i] = 0.0;
     spheres->dissipated_damping[i] = 0.0;
-    spheres->dissipated_tangential[i] = 0.0;
     spheres->caught[i] = 0;
     sections_begin(&sim->sections, spheres, i);
 }
@@ -208,18 +207,6 @@ int simulation_create(struct simulation *sim, const struct comm *comm, const str
     return REPORT_FINISHED;
 }
 
-/* Files of before there was such a total have none. */
-static bool may_be_missing(const char *name)
-{
-    static const char *const later[] = {"run.turned",    "run.inserted_energy", "leavers.count",
-                                        "leavers.mass",  "run.crossed_x",       "run.crossed_y",
-                                        "run.crossed_z", "run.gravity_work"};
-    for (size_t k = 0; k < sizeof later / sizeof *later; k++)
-        if (strcmp(name, later[k]) == 0)
-            return true;
-    return false;
-}
-
 /* Totals from the file: rank 0 holds them, the others hold nothing yet. */
 static int restore_monitors(struct simulation *sim, const struct checkpoint *checkpoint)
 {
@@ -232,7 +219,7 @@ static int restore_monitors(struct simulation *sim, const struct checkpoint *che
             found = strcmp(checkpoint->monitors[c].name, monitors[m].name) == 0 ? c : found;
         if (found >= 0)
             *monitors[m].sum = checkpoint->monitors[found].sum;
-        else if (!may_be_missing(monitors[m].name))
+        else
             status = REPORT_STORAGE;
     }
     free(monitors);

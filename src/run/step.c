@@ -74,7 +74,8 @@ static void pair_forces(struct simulation *sim)
         .material = sim->spheres.material,
         .n_materials = sim->materials.n,
         .pairs = sim->materials.pairs,
-        .dissipated_tangential = sim->spheres.dissipated_tangential,
+        .n_owned = sim->spheres.n_owned,
+        .lost = &sim->observe.totals[OBSERVE_TANGENTIAL],
         .dt = sim->dt,
     };
     for (int l = 0; l < CONTACT_LANES; l++)

@@ -113,10 +113,7 @@ static void describe_spheres(struct table *table, bool removals)
     for (int f = 0; f < SPHERE_N_FIELDS; f++) {
         if (!is_saved(f, removals))
             continue;
-        if (f == SPHERE_CAUGHT)
-            table_add_optional(table, &sphere_fields[f], table->record_size);
-        else
-            table_add_column(table, &sphere_fields[f], table->record_size);
+        table_add_column(table, &sphere_fields[f], table->record_size);
         table->record_size += field_size(&sphere_fields[f]);
     }
 }
@@ -349,10 +346,10 @@ static void check_format(struct h5 *h5)
     const int64_t version = h5_get_int(h5, "/run", "format_version");
     if (strcmp(format, FORMAT) != 0)
         h5_fail(h5, "it is not a checkpoint of tremie");
-    else if (version < 1 || version > CHECKPOINT_FORMAT_VERSION)
+    else if (version != CHECKPOINT_FORMAT_VERSION)
         h5_fail(h5,
                 "its format version is %" PRId64
-                " and this program reads up to %d; use a newer tremie",
+                " and this program reads %d; use the tremie that wrote it",
                 version, CHECKPOINT_FORMAT_VERSION);
     free(format);
 }

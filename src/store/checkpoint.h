@@ -19,9 +19,8 @@
  *                    names and sums have theirs as attribute `checksum`
  * Nothing in it depends on rank count, machine or clock (those are in the log and the series).
  *
- * Format versions count up: version 1 had no /state, version 2 no /spheres/caught, which is
- * there for jobs with removals.  A program reads its own version and all before; of a newer one
- * it says so.
+ * Format versions count up.  Until there is a release a program reads its own alone and says
+ * which one a file has; since version 4 what the tangential law loses is a total, not a sphere's.
  *
  * Writing: space is reserved and agreed on, the file is written under a temporary name, forced
  * to the disk, renamed, its folder forced to the disk.  Reading verifies every checksum.
@@ -41,7 +40,7 @@ struct comm;
 struct run_folder;
 struct spheres;
 
-enum { CHECKPOINT_FORMAT_VERSION = 3, CHECKPOINT_NAME_SIZE = 64 };
+enum { CHECKPOINT_FORMAT_VERSION = 4, CHECKPOINT_NAME_SIZE = 64 };
 
 struct checkpoint_monitor {
     char name[CHECKPOINT_NAME_SIZE];

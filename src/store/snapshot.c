@@ -43,9 +43,6 @@ const struct field snapshot_fields[SNAPSHOT_N_FIELDS] = {
     [SNAPSHOT_DISSIPATED_DAMPING] = {"dissipated_damping", "J",
                                      "turned into heat by contact damping since birth",
                                      FIELD_DOUBLE, 1, 0},
-    [SNAPSHOT_DISSIPATED_TANGENTIAL] = {"dissipated_tangential", "J",
-                                        "lost by the tangential law on unloading since birth",
-                                        FIELD_DOUBLE, 1, 0},
 };
 
 static const struct field contact_fields[SNAPSHOT_N_CONTACT_FIELDS] = {

@@ -33,13 +33,7 @@ void table_clear(struct table *table)
 void table_add_column(struct table *table, const struct field *field, size_t offset)
 {
     CHECK(table->n_columns < TABLE_COLUMNS_MAX, "%s has too many columns", table->name);
-    table->columns[table->n_columns++] = (struct table_column){*field, offset, false};
-}
-
-void table_add_optional(struct table *table, const struct field *field, size_t offset)
-{
-    table_add_column(table, field, offset);
-    table->columns[table->n_columns - 1].optional = true;
+    table->columns[table->n_columns++] = (struct table_column){*field, offset};
 }
 
 static int64_t n_blocks(int64_t n_rows)
@@ -269,19 +263,9 @@ void table_pack(const struct table *table, const struct comm *comm, struct h5 *h
     comm_mail_clear(&mail);
 }
 
-static bool is_missing(const struct table *table, int k, struct h5 *h5)
-{
-    char *path = column_path(table, k);
-    const bool missing = table->columns[k].optional && !h5_has(h5, path);
-    free(path);
-    return missing;
-}
-
 void table_measure(struct table *table, struct h5 *h5)
 {
     for (int k = 0; k < table->n_columns; k++) {
-        if (is_missing(table, k, h5))
-            continue;
         char *path = column_path(table, k), *sums_path = checksum_path(table, k);
         const int64_t n = h5_count_rows(h5, path, &table->columns[k].field);
         const int64_t n_sums = h5_count_rows(h5, sums_path, &CHECKSUM);
@@ -325,8 +309,7 @@ void table_read(struct table *table, struct h5 *h5, const struct comm *comm, int
     free(table->records);
     table->records = array_allocate((size_t)table->n, table->record_size);
     for (int k = 0; k < table->n_columns; k++)
-        if (!is_missing(table, k, h5))
-            read_column(table, k, h5);
+        read_column(table, k, h5);
     for (int64_t i = 0; i < table->n; i++) {
         const int64_t id = table_id(table, i);
         if (id < 0 || id >= n_ids)

@@ -28,7 +28,6 @@ enum { TABLE_BLOCK = 256, TABLE_COLUMNS_MAX = 16 };
 struct table_column {
     struct field field;
     size_t offset; /* within a record [bytes] */
-    bool optional; /* 0 throughout where a file, an older one, lacks it */
 };
 
 struct table {
@@ -47,8 +46,6 @@ void table_init(struct table *table, const char *name, size_t record_size,
                 int (*compare)(const void *, const void *));
 void table_clear(struct table *table);
 void table_add_column(struct table *table, const struct field *field, size_t offset);
-/* One that older files lack. */
-void table_add_optional(struct table *table, const struct field *field, size_t offset);
 
 /* Sorts the n records that each rank holds into slices; ids lie in 0 .. n_ids - 1, keys are
  * unique. Collective. */

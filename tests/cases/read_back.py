@@ -29,7 +29,6 @@ SPHERES = {
     "sides": ("1", "<i8", 1),
     "dissipated_friction": ("J", "<f8", 1),
     "dissipated_damping": ("J", "<f8", 1),
-    "dissipated_tangential": ("J", "<f8", 1),
 }
 HISTORY = {
     "tangential_force": ("N", "<f8", 3),
@@ -86,7 +85,7 @@ def expect_checksums(test, file, name):
 
 def check_counts(file, n_spheres, dt):
     test, run = Test("checkpoint: counts, units, time"), file["run"].attrs
-    test.expect(text(run["format"]) == "tremie checkpoint" and run["format_version"] == 3, "format")
+    test.expect(text(run["format"]) == "tremie checkpoint" and run["format_version"] == 4, "format")
     test.expect(run["n_spheres"] == n_spheres, f"{run['n_spheres']} spheres")
     test.expect(run["dt"] == dt and text(run["dt_unit"]) == "s", f"dt is {run['dt']}")
     test.expect(run["time"] == run["step"] * dt and text(run["time_unit"]) == "s", f"time is {run['time']}")
@@ -174,9 +173,9 @@ def check_energy(run, file):
     """The last row and the checkpoint of the same step tell the same story."""
     test = Test("series: the last row agrees with the checkpoint")
     columns, _, _ = read_series(run, "series")
-    for name in ("dissipated_friction", "dissipated_tangential"):
-        total = file["spheres"][name][()].sum()
-        test.expect(abs(total - columns[name][-1]) <= 1e-9 * (1 + abs(total)), f"{name}: {total}, {columns[name][-1]}")
+    total = file["spheres"]["dissipated_friction"][()].sum()
+    test.expect(abs(total - columns["dissipated_friction"][-1]) <= 1e-9 * (1 + abs(total)),
+                f"friction: {total}, {columns['dissipated_friction'][-1]}")
     test.expect(columns["n_contacts"][-1] == file["run"].attrs["n_contacts"], "number of contacts")
     test.print()
 

@@ -119,7 +119,7 @@ checkpoint: {every: {wall: 0}}
 watch: {overlap: 0.5}
 output:
   snapshots: {every: 0.002, contacts: true, fields: [velocity, angular_velocity, force, torque, mass, material,
-              group, dissipated_friction, dissipated_damping, dissipated_tangential]}
+              group, dissipated_friction, dissipated_damping]}
 END
 run 2 collide collide
 result "a run with all fields"

@@ -12,7 +12,7 @@
 #include "contact/pair_kernel.h"
 #include "model/restitution.h"
 
-enum { SCENE_SPHERES = 120, SCENE_MATERIALS = 3, SCENE_PAIRS = 4096 };
+enum { SCENE_SPHERES = 120, SCENE_OWNED = 90, SCENE_MATERIALS = 3, SCENE_PAIRS = 4096 };
 
 /* All that a kernel reads and writes. */
 struct scene {
@@ -22,7 +22,7 @@ struct scene {
     struct sphere_row motion[SCENE_SPHERES + 2], spin[SCENE_SPHERES + 2];
     struct sphere_row force[SCENE_SPHERES + 2];
     int32_t material[SCENE_SPHERES + 2];
-    double dissipated[SCENE_SPHERES + 2];
+    struct exact_sum lost;
     struct material_pair pairs[SCENE_MATERIALS * SCENE_MATERIALS];
     double dt, overlap_max;
     uint64_t random;
@@ -122,7 +122,8 @@ static inline struct pair_kernel_work scene_work(struct scene *scene)
         .material = scene->material,
         .n_materials = SCENE_MATERIALS,
         .pairs = scene->pairs,
-        .dissipated_tangential = scene->dissipated,
+        .n_owned = SCENE_OWNED,
+        .lost = &scene->lost,
         .dt = scene->dt,
     };
     for (int lane = 0; lane < CONTACT_LANES; lane++)
@@ -163,8 +164,11 @@ static inline const char *scene_difference(const struct scene *a, const struct s
         return "force";
     if (memcmp(a->history, b->history, sizeof a->history) != 0)
         return "history";
-    if (memcmp(a->dissipated, b->dissipated, sizeof a->dissipated) != 0)
-        return "dissipated";
+    struct exact_sum lost[2] = {a->lost, b->lost};
+    exact_sum_normalise(&lost[0]);
+    exact_sum_normalise(&lost[1]);
+    if (memcmp(lost[0].limb, lost[1].limb, sizeof lost[0].limb) != 0)
+        return "lost";
     return memcmp(&a->overlap_max, &b->overlap_max, sizeof a->overlap_max) != 0 ? "overlap_max"
                                                                                 : NULL;
 }

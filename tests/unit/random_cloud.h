@@ -70,7 +70,6 @@ static inline int cloud_add(struct spheres *spheres, int64_t id, const double *x
     spheres->sides[i] = id % 5;
     spheres->dissipated_friction[i] = 0.5 * (double)id;
     spheres->dissipated_damping[i] = 0.25 * (double)id;
-    spheres->dissipated_tangential[i] = 0.125 * (double)id;
     spheres->allowance[i] = 0.0;
     return i;
 }

@@ -19,7 +19,6 @@ static struct cloud_random dice = {5};
 /* Spheres over a square, in turns touching it and not, and what is known of them. */
 struct scene {
     struct sphere_row motion[N + 2], spin[N + 2], force[N + 2];
-    double dissipated_tangential[N + 2];
     int32_t material[N + 2];
     struct facet_contact contacts[N + 1];
     struct facet_kernel_load loads[2];
@@ -60,7 +59,6 @@ static struct facet_kernel_work work_on(struct scene *scene)
     return (struct facet_kernel_work){.motion = scene->motion,
                                       .spin = scene->spin,
                                       .force = scene->force,
-                                      .dissipated_tangential = scene->dissipated_tangential,
                                       .material = scene->material,
                                       .n_materials = MATERIALS,
                                       .pairs = PAIRS,
@@ -158,8 +156,6 @@ static void compare(bool full, bool ledger, const struct body *body)
         }
         EXPECT(memcmp(expected.force, got.force, sizeof got.force) == 0);
         EXPECT(memcmp(expected.contacts, got.contacts, sizeof got.contacts) == 0);
-        EXPECT(memcmp(expected.dissipated_tangential, got.dissipated_tangential,
-                      sizeof got.dissipated_tangential) == 0);
         EXPECT(same_loads(&expected, &got));
         for (int i = 0; i < N; i++) {
             touching += got.contacts[i].history[CONTACT_RADIUS_LANE] > 0.0;

@@ -68,7 +68,8 @@ static void apply_one(struct pair_kernel_work *work, int k, const struct materia
         g[3] += 0.5 * result.lost_friction;
         f[7] += 0.5 * result.lost_damping;
         g[7] += 0.5 * result.lost_damping;
-        work->dissipated_tangential[i] += result.lost_law;
+        if (i < work->n_owned)
+            exact_sum_add(work->lost, result.lost_law);
     }
     work->overlap_max = 0.5 * relative > work->overlap_max ? 0.5 * relative : work->overlap_max;
 }
