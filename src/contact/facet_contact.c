@@ -364,7 +364,7 @@ static void merge_loads(struct facet_contacts *facets, int b)
         lanes_exact_merge(&step->sums[3 + x], step->n_terms, &load->torque[x]);
     }
     lanes_exact_merge(&step->sums[6], step->n_terms, &load->work);
-    lanes_exact_merge(&step->sums[7], step->n_terms, &load->lost);
+    lanes_exact_merge(&step->sums[7], step->n_terms, &load->wound);
     load->force[0].overflow += step->n_overflow;
     step->n_terms = step->n_overflow = 0;
 }
@@ -693,7 +693,6 @@ static double held_energy(const struct spheres *spheres, const struct body *body
                           const struct facet_contact *contact, const struct material_pair *pair,
                           double dt)
 {
-    const double none[CONTACT_LANES] = {0.0};
     const int i = contact->sphere;
     const struct vec3 centre = sphere_place(spheres, i);
     const struct vec3 drift =
@@ -703,7 +702,7 @@ static double held_energy(const struct spheres *spheres, const struct body *body
     const double overlap = sphere_radius(spheres, i) - at.distance;
     if (!(overlap > 0.0))
         return 0.0;
-    return contact_law_elastic_energy(overlap, spheres->spin[i].lane[3], pair, none);
+    return contact_law_normal_energy(overlap, sphere_curvature(spheres, i), pair);
 }
 
 void facet_contacts_held(const struct facet_contacts *facets, const struct spheres *spheres,
@@ -724,16 +723,18 @@ void facet_contacts_held(const struct facet_contacts *facets, const struct spher
 
 void facet_contacts_elastic_energy(const struct facet_contacts *facets,
                                    const struct spheres *spheres, const struct bodies *bodies,
-                                   const struct materials *materials, struct exact_sum *sum)
+                                   const struct materials *materials, struct exact_sum *normal,
+                                   struct exact_sum *springs)
 {
     for (int k = 0; k < facets->n; k++) {
         const struct facet_contact *contact = &facets->list[k];
         if (!holds_history(contact))
             continue;
         const int i = contact->sphere, wall = bodies->list[contact->body].material;
-        exact_sum_add(sum, contact_law_elastic_energy(
-                               contact->overlap, spheres->spin[i].lane[3],
-                               &materials->pairs[spheres->material[i] * materials->n + wall],
-                               contact->history));
+        const struct material_pair *pair =
+            &materials->pairs[spheres->material[i] * materials->n + wall];
+        exact_sum_add(normal, contact_law_normal_energy(contact->overlap,
+                                                        sphere_curvature(spheres, i), pair));
+        exact_sum_add(springs, contact_law_spring_energy(pair, contact->history));
     }
 }

@@ -57,7 +57,7 @@ struct body_load {
     struct exact_sum force[3];  /* [N], summed over steps */
     struct exact_sum torque[3]; /* about the origin [N m], summed over steps */
     struct exact_sum work;      /* of the body's motion on spheres [J], since step 0 */
-    struct exact_sum lost;      /* by the tangential law of its contacts [J], since step 0 */
+    struct exact_sum wound;     /* work that its contacts' springs took up [J], since step 0 */
 };
 
 struct facet_contacts {
@@ -111,10 +111,12 @@ void facet_contacts_held(const struct facet_contacts *facets, const struct spher
                          const struct bodies *bodies, const struct materials *materials,
                          double dt, struct exact_sum *sum);
 
-/* Elastic energy stored in facet contacts, added to `sum` (each once, by the sphere's owner),
- * as of the last facet_contacts_apply(). Local. */
+/* Elastic energy stored in facet contacts (each once, by the sphere's owner), as of the last
+ * facet_contacts_apply(): that of normal springs is added to `normal`, that of springs with a
+ * memory to `springs`. Local. */
 void facet_contacts_elastic_energy(const struct facet_contacts *facets,
                                    const struct spheres *spheres, const struct bodies *bodies,
-                                   const struct materials *materials, struct exact_sum *sum);
+                                   const struct materials *materials, struct exact_sum *normal,
+                                   struct exact_sum *springs);
 
 #endif

@@ -150,10 +150,10 @@ LANES_INLINE void add_term(const struct block *block, int s, const lanes_mask li
 }
 
 /* Gives the bodies the force on them, its torque (`twist` besides the force's), the work of
- * their motion and what the tangential law has lost.  `force` becomes what the exact sums took, so that the spheres' is the opposite
+ * their motion and what springs took up.  `force` becomes what the exact sums took, so that the spheres' is the opposite
  * to the last bit. */
 LANES_INLINE void load_bodies(const struct facet_kernel_work *work, const struct block *block,
-                              lanes force[3], const lanes twist[3], const lanes *lost)
+                              lanes force[3], const lanes twist[3], const lanes *wound)
 {
     const lanes dt = lanes_all(work->dt), none = lanes_all(0.0);
     const lanes path[3] = {dt * block->wall[0], dt * block->wall[1], dt * block->wall[2]};
@@ -164,8 +164,8 @@ LANES_INLINE void load_bodies(const struct facet_kernel_work *work, const struct
     lanes_mask limbs[3];
     lanes torque[3];
 
-    if (lost != NULL)
-        fits &= lanes_exact_fits(*lost);
+    if (wound != NULL)
+        fits &= lanes_exact_fits(*wound);
     if (lanes_any(~fits)) /* something has run away: take note of it */
         for (int l = 0; l < WIDTH; l++)
             block->load[l]->n_overflow += fits[l] == 0;
@@ -185,8 +185,8 @@ LANES_INLINE void load_bodies(const struct facet_kernel_work *work, const struct
         lanes_exact_round(lanes_keep(fits, done), limbs);
         add_term(block, 6, limbs);
     }
-    if (lost != NULL) {
-        lanes_exact_round(lanes_keep(fits, *lost), limbs);
+    if (wound != NULL) {
+        lanes_exact_round(lanes_keep(fits, *wound), limbs);
         add_term(block, 7, limbs);
     }
     for (int l = 0; l < WIDTH; l++)
@@ -228,7 +228,7 @@ LANES_INLINE lanes press(const struct facet_kernel_work *work, const struct bloc
         twist[x] = choice.full ? result.torque[x] : none;
         rows[4 + x] = -block->motion[3] * turn[x] - twist[x];
     }
-    load_bodies(work, block, force, twist, choice.ledger ? &result.lost_law : NULL);
+    load_bodies(work, block, force, twist, choice.ledger ? &result.wound : NULL);
 #pragma GCC unroll 3
     for (int x = 0; x < 3; x++)
         rows[x] = -force[x];

@@ -44,9 +44,9 @@ struct pair_kernel_work {
     int n_materials;
     const struct material_pair *pairs; /* n_materials x n_materials */
     int n_owned;                       /* spheres below this */
-    struct exact_sum *lost; /* by the tangential law [J]; without the ledger unused */
-    double dt;              /* [s] */
-    double overlap_max;     /* out: largest overlap (1/R_i + 1/R_j) / 2 [-] */
+    struct exact_sum *wound;           /* [J]; without the ledger unused */
+    double dt;                         /* [s] */
+    double overlap_max;                /* out: largest overlap (1/R_i + 1/R_j) / 2 [-] */
 };
 
 struct pair_kernel {

@@ -209,36 +209,36 @@ LANES_INLINE struct contact_law_constants constants_of_each(const struct pair_ke
     return contact_law_constants_of_each(pairs, full);
 }
 
-/* What the tangential law has lost so far in this step. */
-struct losses {
+/* Work that springs took up so far in this step. */
+struct wound {
     struct lanes_exact sum;
     int64_t n_terms; /* a lane, in the sum */
     int64_t n_overflow;
 };
 
 /* Brings what is summed in lanes to the total, before it fills up. */
-static void losses_merge(struct losses *losses, struct exact_sum *total)
+static void wound_merge(struct wound *wound, struct exact_sum *total)
 {
-    lanes_exact_merge(&losses->sum, losses->n_terms, total);
-    total->overflow += losses->n_overflow;
-    losses->n_terms = losses->n_overflow = 0;
+    lanes_exact_merge(&wound->sum, wound->n_terms, total);
+    total->overflow += wound->n_overflow;
+    wound->n_terms = wound->n_overflow = 0;
 }
 
-/* Counts what pairs lost; a pair that a cut divides is counted by the owner of its first. */
-LANES_INLINE void block_lose(const struct pair_kernel_work *work, int k, lanes lost,
-                             struct losses *losses)
+/* Counts what pairs took up; a pair that a cut divides is counted by the owner of its first. */
+LANES_INLINE void block_wind(const struct pair_kernel_work *work, int k, lanes taken,
+                             struct wound *wound)
 {
-    const lanes own = lanes_keep(lanes_below(work->first + k, work->n_owned), lost);
+    const lanes own = lanes_keep(lanes_below(work->first + k, work->n_owned), taken);
     const lanes_mask fits = lanes_exact_fits(own);
     lanes_mask limbs[3];
 
     if (lanes_any(~fits)) /* something has run away: take note of it */
         for (int l = 0; l < WIDTH; l++)
-            losses->n_overflow += fits[l] == 0;
+            wound->n_overflow += fits[l] == 0;
     lanes_exact_round(lanes_keep(fits, own), limbs);
-    lanes_exact_add(&losses->sum, limbs);
-    if (++losses->n_terms == LANES_EXACT_TERMS)
-        losses_merge(losses, work->lost);
+    lanes_exact_add(&wound->sum, limbs);
+    if (++wound->n_terms == LANES_EXACT_TERMS)
+        wound_merge(wound, work->wound);
 }
 
 /* Compiled for each choice, so that what is not asked for costs nothing.  Works on a copy,
@@ -249,7 +249,7 @@ LANES_INLINE void apply(struct pair_kernel_work *given, bool uniform,
     const struct pair_kernel_work own = *given, *work = &own;
     const lanes dt = lanes_all(work->dt);
     struct contact_law_constants constants;
-    struct losses losses = {.n_terms = 0};
+    struct wound wound = {.n_terms = 0};
     lanes deepest = lanes_all(0.0);
 
     given->overlap_max = 0.0;
@@ -279,12 +279,12 @@ LANES_INLINE void apply(struct pair_kernel_work *given, bool uniform,
         block_rows(&block, &meeting, &result, choice, first, second);
         block_add(work, &block, first, second);
         if (choice.ledger)
-            block_lose(work, k, result.lost_law, &losses);
+            block_wind(work, k, result.wound, &wound);
         const lanes relative = meeting.overlap * meeting.inverse_radius;
         deepest = lanes_where(relative > deepest, relative, deepest);
     }
     if (choice.ledger)
-        losses_merge(&losses, work->lost);
+        wound_merge(&wound, work->wound);
     for (int l = 0; l < WIDTH; l++)
         given->overlap_max =
             0.5 * deepest[l] > given->overlap_max ? 0.5 * deepest[l] : given->overlap_max;

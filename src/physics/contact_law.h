@@ -95,7 +95,8 @@ struct contact_law_result {
     /* Energy turned to heat in the step that ends now [J]; 0 with the ledger off. */
     lanes lost_friction; /* by sliding */
     lanes lost_damping;  /* by dashpots */
-    lanes lost_law;      /* elastic energy of springs dropped as their stiffness changes */
+    lanes wound;         /* work along the contact that springs took up: what they do not hold
+                            any more the law has lost, as their stiffness changed */
 };
 
 LANES_INLINE lanes contact_law_dot(const lanes a[3], const lanes b[3])
@@ -180,9 +181,9 @@ struct contact_law_spring {
     /* What comes of it: */
     lanes force[3]; /* of spring and dashpot, along the velocity [N] */
     lanes_mask sliding;
-    /* With the ledger on: products of memory and velocity, and, while it slides, the mean
-     * spring force times the stretch that sliding spares it [N2]. */
-    lanes memory_memory, memory_velocity, held_held, slip;
+    /* With the ledger on: power of the spring's forces before and after [W], and, while it
+     * slides, the mean spring force times the stretch that sliding spares it [N2]. */
+    lanes power, slip;
 };
 
 /* The normal spring and its dashpot, cut off where they would pull. */
@@ -236,10 +237,8 @@ LANES_INLINE void contact_law_stretch(struct contact_law_spring *spring, lanes_m
     lanes h1[3], h[3], g[3]; /* memory; spring; spring and dashpot [N] */
 
     spring->slip = lanes_all(0.0);
-    if (ledger) {
-        spring->memory_memory = contact_law_product(spring->memory, spring->memory, n);
-        spring->memory_velocity = contact_law_product(spring->memory, spring->velocity, n);
-    }
+    if (ledger)
+        spring->power = contact_law_product(spring->memory, spring->velocity, n);
 #pragma GCC unroll 3
     for (int x = 0; x < n; x++) {
         h1[x] = spring->scale * spring->memory[x];
@@ -255,7 +254,7 @@ LANES_INLINE void contact_law_stretch(struct contact_law_spring *spring, lanes_m
     if (lanes_any(spring->sliding))
         contact_law_slide(spring, g_squared, n, ledger, h1, h, g);
     if (ledger)
-        spring->held_held = contact_law_product(h, h, n);
+        spring->power += contact_law_product(h, spring->velocity, n);
 #pragma GCC unroll 3
     for (int x = 0; x < n; x++) {
         spring->force[x] = g[x];
@@ -263,30 +262,23 @@ LANES_INLINE void contact_law_stretch(struct contact_law_spring *spring, lanes_m
     }
 }
 
-/* Where the work of a spring and its dashpot went in this step, but for what the spring stores.
- * `taken` is what turning took off the memory's square [N2], `dragged` the dashpot's work. */
+/* Where the work of a spring and its dashpot went in this step.  `dragged` is the dashpot's,
+ * which counts as friction where it slides. */
 LANES_INLINE void contact_law_spring_ledger(const struct contact_law_spring *spring,
-                                            const struct contact_law_work *work, lanes taken,
-                                            lanes dragged, lanes softness, lanes dt,
+                                            const struct contact_law_work *work, lanes dragged,
+                                            lanes softness, lanes dt,
                                             struct contact_law_result *result)
 {
-    /* Both are infinite where they do not touch [1/m]. */
-    const lanes inverse_a = 1.0 / work->radius, inverse_middle = 1.0 / work->middle;
-    const lanes slid = spring->slip * softness * inverse_middle;
-    /* Products with the spring's force, scaled (h1) and as it is now (h). */
-    const lanes h1_h1 = spring->scale * spring->scale * spring->memory_memory;
-    const lanes h1_v = spring->scale * spring->memory_velocity;
+    lanes wound = 0.5 * dt * spring->power; /* (1.18) */
 
-    result->lost_friction += lanes_keep(spring->sliding, slid + dragged); /* (1.16) */
     result->lost_damping += lanes_where(spring->sliding, lanes_all(0.0), dragged);
-
-    /* The memory turned, the stiffness changed, and work was done against the force before. */
-    const lanes turned = spring->memory_memory + taken;
-    const lanes before = lanes_keep(work->touched, turned * work->inverse_old);
-    const lanes gained = (spring->held_held - h1_h1) * inverse_middle;
-    const lanes after = lanes_keep(work->touching, spring->held_held * inverse_a - gained);
-    const lanes dropped = softness * (before - after);
-    result->lost_law += 0.5 * (dropped + (spring->memory_velocity - h1_v) * dt); /* (1.18) */
+    if (lanes_any(spring->sliding)) { /* without, this changes nothing */
+        const lanes slid = spring->slip * softness / work->middle;
+        const lanes rubbed = lanes_keep(spring->sliding, slid);
+        result->lost_friction += lanes_keep(spring->sliding, slid + dragged); /* (1.16) */
+        wound -= rubbed;
+    }
+    result->wound += wound;
 }
 
 /* The part of a vector in the plane of the contact; returns what lay across it. */
@@ -327,7 +319,7 @@ LANES_INLINE void contact_law_grip(struct contact_law_work *work, lanes v_t[3],
                                    struct contact_law_choice choice, lanes *history,
                                    struct contact_law_result *result)
 {
-    const lanes taken = contact_law_flatten(history, meeting->normal); /* (1.10) */
+    contact_law_flatten(history, meeting->normal); /* (1.10) */
     struct contact_law_spring spring = {.velocity = v_t,
                                         .memory = history,
                                         .scale = work->scale,
@@ -352,8 +344,7 @@ LANES_INLINE void contact_law_grip(struct contact_law_work *work, lanes v_t[3],
         const lanes drag[3] = {spring.force[0] - history[0], spring.force[1] - history[1],
                                spring.force[2] - history[2]};
         const lanes dragged = contact_law_drag(work, v_t, meeting, dt, drag, history, result);
-        contact_law_spring_ledger(&spring, work, taken * taken, dragged, 1.0 / pair->tangential,
-                                  dt, result);
+        contact_law_spring_ledger(&spring, work, dragged, 1.0 / pair->tangential, dt, result);
     }
 }
 
@@ -382,7 +373,7 @@ LANES_INLINE void contact_law_roll(const struct contact_law_work *work,
     lanes rolls[3] = {radius * meeting->spin[0], radius * meeting->spin[1],
                       radius * meeting->spin[2]};                     /* (1.26) [m/s] */
     const lanes twists = contact_law_flatten(rolls, meeting->normal); /* [m/s] */
-    const lanes taken = contact_law_flatten(history + CONTACT_LAW_ROLLING, meeting->normal);
+    contact_law_flatten(history + CONTACT_LAW_ROLLING, meeting->normal);
     /* A torque of constant size needs no memory: a dashpot that would stop the spin within two
      * steps, limited. */
     const lanes_mask forgets = pair->constant_torque;
@@ -397,8 +388,8 @@ LANES_INLINE void contact_law_roll(const struct contact_law_work *work,
     spring.hold = spring.slide;
     contact_law_stretch(&spring, work->touching, 3, ledger);
     if (ledger)
-        contact_law_spring_ledger(&spring, work, taken * taken,
-                                  contact_law_dragged(&spring, 3, dt), softness, dt, result);
+        contact_law_spring_ledger(&spring, work, contact_law_dragged(&spring, 3, dt), softness,
+                                  dt, result);
 
     struct contact_law_spring twist = {.velocity = &twists,
                                        .memory = history + CONTACT_LAW_TWISTING,
@@ -409,8 +400,8 @@ LANES_INLINE void contact_law_roll(const struct contact_law_work *work,
     twist.hold = twist.slide;
     contact_law_stretch(&twist, work->touching, 1, ledger);
     if (ledger)
-        contact_law_spring_ledger(&twist, work, zero, contact_law_dragged(&twist, 1, dt),
-                                  softness, dt, result);
+        contact_law_spring_ledger(&twist, work, contact_law_dragged(&twist, 1, dt), softness,
+                                  dt, result);
 #pragma GCC unroll 3
     for (int x = 0; x < 3; x++)
         result->torque[x] =
@@ -450,7 +441,7 @@ LANES_INLINE void contact_law(const struct contact_law_meeting *meeting,
         work.middle = lanes_where(begins & within, part, work.middle);
     }
     work.stretch = pair->tangential * dt * work.middle; /* (1.11) */
-    result->lost_friction = result->lost_damping = result->lost_law = lanes_all(0.0);
+    result->lost_friction = result->lost_damping = result->wound = lanes_all(0.0);
     contact_law_grip(&work, v_t, meeting, pair, dt, choice, history, result);
     if (choice.full)
         contact_law_roll(&work, meeting, pair, dt, choice.ledger, history, result);
@@ -469,21 +460,27 @@ LANES_INLINE void contact_law_scalar(const struct contact_law_meeting *meeting,
     contact_law(meeting, &constants, dt, choice, history, result);
 }
 
-/* Elastic energy that a touching contact holds: its springs' [J].  (1.15) */
-LANES_INLINE double contact_law_elastic_energy(double overlap, double inverse_radius,
-                                               const struct material_pair *pair,
-                                               const double history[CONTACT_LAW_LANES])
+/* Elastic energy that a contact's springs with a memory hold after the law [J].  (1.15) */
+LANES_INLINE double contact_law_spring_energy(const struct material_pair *pair,
+                                              const double history[CONTACT_LAW_LANES])
+{
+    const double *rolling = history + CONTACT_LAW_ROLLING;
+    const double twisting = history[CONTACT_LAW_TWISTING];
+    const double springs = contact_law_dot(history, history) +
+                           contact_law_dot(rolling, rolling) + twisting * twisting;
+    const double radius = history[CONTACT_LAW_RADIUS];
+    return radius > 0.0 ? springs / (2.0 * pair->tangential * radius) : 0.0;
+}
+
+/* Elastic energy of the normal spring [J].  (1.15) */
+LANES_INLINE double contact_law_normal_energy(double overlap, double inverse_radius,
+                                              const struct material_pair *pair)
 {
     if (!(overlap > 0.0))
         return 0.0;
     const bool linear = pair->linear > 0.0;
     const double radius = linear ? 1.0 : sqrt(overlap / inverse_radius); /* [m] */
-    const double *rolling = history + CONTACT_LAW_ROLLING;
-    const double twisting = history[CONTACT_LAW_TWISTING];
-    const double springs = contact_law_dot(history, history) +
-                           contact_law_dot(rolling, rolling) + twisting * twisting;
-    return (linear ? 0.5 : 0.4) * pair->normal * radius * overlap * overlap +
-           springs / (2.0 * pair->tangential * radius);
+    return (linear ? 0.5 : 0.4) * pair->normal * radius * overlap * overlap;
 }
 #endif
 

@@ -24,6 +24,8 @@ enum energy {
     ENERGY_TANGENTIAL,
     ENERGY_WORK, /* put in by prescribed motion */
     N_ENERGIES,
+    ENERGY_SPRINGS = N_ENERGIES, /* of the elastic, that in springs with a memory */
+    N_SUMMED,
 };
 
 static const double OVERLAP_SCALE = 0x1p40;
@@ -225,8 +227,10 @@ static struct vec3 crossings_total(const struct simulation *sim)
                          exact_sum_value(&sums[2])};
 }
 
-/* Elastic energy of the pairs whose first sphere is owned, and their number. */
-static int64_t add_pair_energy(const struct simulation *sim, struct exact_sum *sum)
+/* Elastic energy of the pairs whose first sphere is owned, of springs with a memory apart;
+ * returns their number. */
+static int64_t add_pair_energy(const struct simulation *sim, struct exact_sum *normal,
+                               struct exact_sum *springs)
 {
     const struct contact_list *list = &sim->contacts.now;
     int64_t n = 0;
@@ -243,9 +247,11 @@ static int64_t add_pair_energy(const struct simulation *sim, struct exact_sum *s
         for (int l = 0; l < CONTACT_LANES; l++)
             if (list->history[l] != NULL)
                 history[l] = list->history[l][k];
-        const int pair = sim->spheres.material[i] * sim->materials.n + sim->spheres.material[j];
-        exact_sum_add(sum, contact_law_elastic_energy(overlap, inverse_radius,
-                                                      &sim->materials.pairs[pair], history));
+        const struct material_pair *pair =
+            &sim->materials
+                 .pairs[sim->spheres.material[i] * sim->materials.n + sim->spheres.material[j]];
+        exact_sum_add(normal, contact_law_normal_energy(overlap, inverse_radius, pair));
+        exact_sum_add(springs, contact_law_spring_energy(pair, history));
         n++;
     }
     return n;
@@ -283,11 +289,21 @@ static void add_forced_energies(const struct simulation *sim, double energies[N_
     }
 }
 
+void observe_taken_over(struct simulation *sim)
+{
+    struct exact_sum normal = {{0}, 0, 0}, *wound = &sim->observe.totals[OBSERVE_WOUND];
+    if (!sim->job->energy_ledger)
+        return;
+    add_pair_energy(sim, &normal, wound);
+    facet_contacts_elastic_energy(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials,
+                                  &normal, wound);
+}
+
 /* Energies summed over ranks. */
 static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], double *speed_max,
                          int64_t counts[3])
 {
-    struct exact_sum sums[N_ENERGIES] = {{{0}, 0, 0}};
+    struct exact_sum sums[N_SUMMED] = {{{0}, 0, 0}};
     double speed2_max = 0.0, own[N_ENERGIES] = {0.0};
     for (int i = 0; i < sim->spheres.n_owned; i++) {
         const double speed2 = sphere_energies(sim, i, own);
@@ -298,10 +314,10 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
         }
     }
     counts[0] = sim->spheres.n_owned;
-    counts[1] = add_pair_energy(sim, &sums[ENERGY_ELASTIC]);
+    counts[1] = add_pair_energy(sim, &sums[ENERGY_ELASTIC], &sums[ENERGY_SPRINGS]);
     counts[2] = count_facets(sim);
     facet_contacts_elastic_energy(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials,
-                                  &sums[ENERGY_ELASTIC]);
+                                  &sums[ENERGY_ELASTIC], &sums[ENERGY_SPRINGS]);
     /* A force works in half of the interval before the step and half of the one after: at the
      * step half of what it adds is done, the mean of before and after. */
     for (int b = 0; b < sim->facets.n_bodies; b++) {
@@ -313,14 +329,18 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
     const struct exact_sum *totals = sim->observe.totals;
     exact_sum_merge(&sums[ENERGY_FRICTION], &totals[OBSERVE_REMOVED_FRICTION]);
     exact_sum_merge(&sums[ENERGY_DAMPING], &totals[OBSERVE_REMOVED_DAMPING]);
-    exact_sum_merge(&sums[ENERGY_TANGENTIAL], &totals[OBSERVE_TANGENTIAL]);
+    exact_sum_merge(&sums[ENERGY_TANGENTIAL], &totals[OBSERVE_WOUND]);
     for (int b = 0; b < sim->facets.n_bodies; b++)
-        exact_sum_merge(&sums[ENERGY_TANGENTIAL], &sim->facets.loads[b].lost);
-    exact_sum_reduce(sim->comm, sums, N_ENERGIES);
+        exact_sum_merge(&sums[ENERGY_TANGENTIAL], &sim->facets.loads[b].wound);
+    exact_sum_reduce(sim->comm, sums, N_SUMMED);
     comm_sum_int(sim->comm, counts, 3);
     comm_max(sim->comm, &speed2_max, 1);
     for (int e = 0; e < N_ENERGIES; e++)
         energies[e] = exact_sum_value(&sums[e]);
+    const double springs = exact_sum_value(&sums[ENERGY_SPRINGS]);
+    energies[ENERGY_ELASTIC] += springs;
+    if (sim->job->energy_ledger)
+        energies[ENERGY_TANGENTIAL] -= springs;
     energies[ENERGY_POTENTIAL] -= vec3_dot(sim->gravity, crossings_total(sim));
     energies[ENERGY_WORK] *= 0.5;
     if (sim->gravity_varies)
@@ -609,7 +629,7 @@ int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
             add_monitor(monitors, &n, &capacity, k < 3 ? &load->force[k] : &load->torque[k - 3],
                         owner, loads[k]);
         add_monitor(monitors, &n, &capacity, &load->work, owner, "work");
-        add_monitor(monitors, &n, &capacity, &load->lost, owner, "tangential");
+        add_monitor(monitors, &n, &capacity, &load->wound, owner, "wound");
     }
     for (int s = 0; s < sim->sections.n; s++) {
         const struct tally *passed = sim->sections.counts[s].passed;

@@ -23,7 +23,7 @@ enum observe_total {
     OBSERVE_REMOVED_ENERGY,   /* carried away by spheres that left [J] */
     OBSERVE_REMOVED_FRICTION, /* dissipated by them before they left [J] */
     OBSERVE_REMOVED_DAMPING,
-    OBSERVE_TANGENTIAL,      /* lost by the tangential law between spheres [J] */
+    OBSERVE_WOUND,           /* work that springs between spheres took up [J] */
     OBSERVE_LAST_STEP,       /* step of the last sample, plus one; on rank 0 */
     OBSERVE_TURNED,          /* largest energy turned over so far [J]; on rank 0 */
     OBSERVE_OVERLAP,         /* largest overlap/radius since then, times 2^40; on rank 0 */
@@ -61,6 +61,9 @@ void observe_gone(struct simulation *sim);
 void observe_gravity(struct simulation *sim);
 /* Velocity v and spin w of sphere i brought to the step, when its forces are known.  Local. */
 void observe_motion(const struct simulation *sim, int i, double v[3], double w[3]);
+/* Books what springs hold at the start of a run that takes contacts over: it was wound before.
+ * Local. */
+void observe_taken_over(struct simulation *sim);
 /* Books sphere i as leaving the run. */
 void observe_removed(struct simulation *sim, int i);
 

@@ -204,6 +204,7 @@ int simulation_create(struct simulation *sim, const struct comm *comm, const str
     sim->spheres.n_all = sim->spheres.n_owned;
     order_renew(&sim->spheres, comm);
     finish(sim, isa);
+    observe_taken_over(sim);
     return REPORT_FINISHED;
 }
 

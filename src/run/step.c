@@ -75,7 +75,7 @@ static void pair_forces(struct simulation *sim)
         .n_materials = sim->materials.n,
         .pairs = sim->materials.pairs,
         .n_owned = sim->spheres.n_owned,
-        .lost = &sim->observe.totals[OBSERVE_TANGENTIAL],
+        .wound = &sim->observe.totals[OBSERVE_WOUND],
         .dt = sim->dt,
     };
     for (int l = 0; l < CONTACT_LANES; l++)

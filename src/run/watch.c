@@ -544,10 +544,9 @@ static void judge_stiffness(struct deepest *deepest, const struct material_pair 
                             double overlap, double inverse_radius, double mass, double speed,
                             double limit)
 {
-    const double none[CONTACT_LAW_LANES] = {0.0};
-    const double held = contact_law_elastic_energy(overlap, inverse_radius, pair, none);
-    const double borne = contact_law_elastic_energy(overlap * limit / deepest->overlap,
-                                                    inverse_radius, pair, none);
+    const double held = contact_law_normal_energy(overlap, inverse_radius, pair);
+    const double borne =
+        contact_law_normal_energy(overlap * limit / deepest->overlap, inverse_radius, pair);
     deepest->approaches = speed < 0.0;
     deepest->softness =
         (held + (deepest->approaches ? 0.5 * mass * speed * speed : 0.0)) / borne;

@@ -22,7 +22,7 @@ struct scene {
     struct sphere_row motion[SCENE_SPHERES + 2], spin[SCENE_SPHERES + 2];
     struct sphere_row force[SCENE_SPHERES + 2];
     int32_t material[SCENE_SPHERES + 2];
-    struct exact_sum lost;
+    struct exact_sum wound;
     struct material_pair pairs[SCENE_MATERIALS * SCENE_MATERIALS];
     double dt, overlap_max;
     uint64_t random;
@@ -123,7 +123,7 @@ static inline struct pair_kernel_work scene_work(struct scene *scene)
         .n_materials = SCENE_MATERIALS,
         .pairs = scene->pairs,
         .n_owned = SCENE_OWNED,
-        .lost = &scene->lost,
+        .wound = &scene->wound,
         .dt = scene->dt,
     };
     for (int lane = 0; lane < CONTACT_LANES; lane++)
@@ -164,11 +164,11 @@ static inline const char *scene_difference(const struct scene *a, const struct s
         return "force";
     if (memcmp(a->history, b->history, sizeof a->history) != 0)
         return "history";
-    struct exact_sum lost[2] = {a->lost, b->lost};
-    exact_sum_normalise(&lost[0]);
-    exact_sum_normalise(&lost[1]);
-    if (memcmp(lost[0].limb, lost[1].limb, sizeof lost[0].limb) != 0)
-        return "lost";
+    struct exact_sum wound[2] = {a->wound, b->wound};
+    exact_sum_normalise(&wound[0]);
+    exact_sum_normalise(&wound[1]);
+    if (memcmp(wound[0].limb, wound[1].limb, sizeof wound[0].limb) != 0)
+        return "wound";
     return memcmp(&a->overlap_max, &b->overlap_max, sizeof a->overlap_max) != 0 ? "overlap_max"
                                                                                 : NULL;
 }

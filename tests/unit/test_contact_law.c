@@ -136,7 +136,7 @@ static struct outcome fly(const struct impact *impact)
                            history, &f);
         out.friction += f.lost_friction;
         out.damping += f.lost_damping;
-        out.law += f.lost_law;
+        out.law += f.wound; /* and what springs hold, until the end */
         if (met && !(meeting.overlap > 0.0))
             break;
         if (meeting.overlap > 0.0) {
@@ -162,7 +162,7 @@ static struct outcome fly(const struct impact *impact)
         const double there =
             kinetic_between(&old_first, &first, mass, inertia) +
             kinetic_between(&old_second, &second, mass, inertia) +
-            contact_law_elastic_energy(meeting.overlap, meeting.inverse_radius, &pair, history);
+            contact_law_normal_energy(meeting.overlap, meeting.inverse_radius, &pair);
         out.imbalance = fmax(out.imbalance, fabs(out.before - there - lost));
     }
     out.v_n = second.v.z - first.v.z;

@@ -69,7 +69,7 @@ static void apply_one(struct pair_kernel_work *work, int k, const struct materia
         f[7] += 0.5 * result.lost_damping;
         g[7] += 0.5 * result.lost_damping;
         if (i < work->n_owned)
-            exact_sum_add(work->lost, result.lost_law);
+            exact_sum_add(work->wound, result.wound);
     }
     work->overlap_max = 0.5 * relative > work->overlap_max ? 0.5 * relative : work->overlap_max;
 }

@@ -33,7 +33,7 @@ struct reference {
     int n_here;
     int *order;                       /* ids in canonical order */
     double (*history)[CONTACT_LANES]; /* at lower id * n + higher id, from lower to higher */
-    struct exact_sum lost;            /* by the tangential law between spheres [J] */
+    struct exact_sum wound;           /* work that springs between spheres took up [J] */
     int64_t step;
 };
 
@@ -218,7 +218,7 @@ static void reference_pair(struct reference *r, int i, int j)
     add_load(r->spheres.force[j].lane, 1.0, force, 0.5 * (sum + difference) - 0.5 * overlap,
              turn, &result, r->materials.full, ledger);
     if (ledger)
-        exact_sum_add(&r->lost, result.lost_law);
+        exact_sum_add(&r->wound, result.wound);
 }
 
 static void reference_move(struct reference *r, int i)
@@ -391,9 +391,9 @@ static int compare_facets(const struct simulation *sim, const struct reference *
     EXPECT(n == n_reference);
     for (int b = 0; b < r->bodies.n; b++) {
         compare_sums(sim, &sim->facets.loads[b].work, &r->facets.loads[b].work);
-        compare_sums(sim, &sim->facets.loads[b].lost, &r->facets.loads[b].lost);
+        compare_sums(sim, &sim->facets.loads[b].wound, &r->facets.loads[b].wound);
     }
-    compare_sums(sim, &sim->observe.totals[OBSERVE_TANGENTIAL], &r->lost);
+    compare_sums(sim, &sim->observe.totals[OBSERVE_WOUND], &r->wound);
     return n_reference;
 }
 
