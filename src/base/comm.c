@@ -96,12 +96,18 @@ void comm_mail_init(struct comm_mail *mail, const struct comm *comm)
     mail->in = array_allocate((size_t)comm->n_ranks, sizeof *mail->in);
 }
 
-void comm_mail_clear(struct comm_mail *mail)
+void comm_mail_forget(struct comm_mail *mail)
 {
     for (int q = 0; q < mail->n_ranks; q++) {
         free(mail->out[q].bytes);
         free(mail->in[q].bytes);
+        mail->out[q] = mail->in[q] = (struct comm_box){0};
     }
+}
+
+void comm_mail_clear(struct comm_mail *mail)
+{
+    comm_mail_forget(mail);
     free(mail->out);
     free(mail->in);
     *mail = (struct comm_mail){0};

@@ -57,6 +57,8 @@ struct comm_mail {
 
 void comm_mail_init(struct comm_mail *mail, const struct comm *comm);
 void comm_mail_clear(struct comm_mail *mail);
+/* Gives back the boxes' memory. */
+void comm_mail_forget(struct comm_mail *mail);
 /* Empties the outgoing boxes. */
 void comm_mail_begin(struct comm_mail *mail);
 void comm_mail_pack(struct comm_mail *mail, int to_rank, const void *bytes, size_t n);

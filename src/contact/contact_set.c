@@ -6,6 +6,7 @@
  */
 #include "contact/contact_set.h"
 
+#include <limits.h>
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>
@@ -386,6 +387,28 @@ void contact_set_prune(struct contact_set *contacts, const struct candidates *ca
     free(inner);
 }
 
+/* The two of an entry by their ids. */
+static int lower_of(const struct contact_list *list, const struct spheres *spheres, int k)
+{
+    const int i = list->first[k], j = list->second[k];
+    return spheres->id[i] > spheres->id[j] ? j : i;
+}
+
+static void add_record(const struct contact_set *contacts, const struct spheres *spheres, int k,
+                       int *n, struct contact_record **records, int *capacity)
+{
+    const struct contact_list *list = &contacts->now;
+    const int lower = lower_of(list, spheres, k);
+    const bool turned = lower != list->first[k];
+    ARRAY_GROW(*records, *n + 1, *capacity);
+    struct contact_record *record = &(*records)[(*n)++];
+    record->first_id = spheres->id[lower];
+    record->second_id = spheres->id[turned ? list->first[k] : list->second[k]];
+    for (int l = 0; l < CONTACT_LANES; l++)
+        record->history[l] =
+            has_lane(contacts, l) ? seen_from(turned, l, list->history[l][k]) : 0.0;
+}
+
 int contact_set_records(const struct contact_set *contacts, const struct spheres *spheres,
                         const unsigned char *chosen, struct contact_record **records,
                         int *capacity)
@@ -393,24 +416,33 @@ int contact_set_records(const struct contact_set *contacts, const struct spheres
     const struct contact_list *list = &contacts->now;
     int n = 0;
     for (int k = 0; k < list->n; k++) {
-        if (!contact_touches(list, k))
-            continue;
-        const int i = list->first[k], j = list->second[k];
-        const bool turned = spheres->id[i] > spheres->id[j];
-        const int lower = turned ? j : i, owned = spheres->n_owned;
-        const bool wanted = chosen == NULL
-                                ? lower < owned
-                                : (i < owned && chosen[i]) || (j < owned && chosen[j]);
-        if (!wanted)
-            continue;
-        ARRAY_GROW(*records, n + 1, *capacity);
-        struct contact_record *record = &(*records)[n++];
-        record->first_id = spheres->id[lower];
-        record->second_id = spheres->id[turned ? i : j];
-        for (int l = 0; l < CONTACT_LANES; l++)
-            record->history[l] =
-                has_lane(contacts, l) ? seen_from(turned, l, list->history[l][k]) : 0.0;
+        const int i = list->first[k], j = list->second[k], owned = spheres->n_owned;
+        if (contact_touches(list, k) && ((i < owned && chosen[i]) || (j < owned && chosen[j])))
+            add_record(contacts, spheres, k, &n, records, capacity);
     }
+    return n;
+}
+
+int contact_set_records_of(const struct contact_set *contacts, const struct spheres *spheres,
+                           int64_t begin, int64_t end, struct contact_record **records,
+                           int *capacity)
+{
+    const struct contact_list *list = &contacts->now;
+    int n = 0;
+    for (int k = 0; k < list->n; k++) {
+        const int lower = contact_touches(list, k) ? lower_of(list, spheres, k) : INT_MAX;
+        if (lower < spheres->n_owned && spheres->id[lower] >= begin && spheres->id[lower] < end)
+            add_record(contacts, spheres, k, &n, records, capacity);
+    }
+    return n;
+}
+
+int contact_set_count(const struct contact_set *contacts, const struct spheres *spheres)
+{
+    const struct contact_list *list = &contacts->now;
+    int n = 0;
+    for (int k = 0; k < list->n; k++)
+        n += contact_touches(list, k) && lower_of(list, spheres, k) < spheres->n_owned;
     return n;
 }
 

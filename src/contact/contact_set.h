@@ -107,12 +107,18 @@ void contact_set_prune(struct contact_set *contacts, const struct candidates *ca
                        struct spheres *spheres, double base, double horizon, bool keep_all,
                        const int *moved);
 
-/* Records of touching contacts.  Those in which an owned sphere marked by chosen[] takes part,
- * or, with chosen NULL, those whose lower id is owned (each contact on exactly one rank).
+/* Records of touching contacts in which an owned sphere marked by chosen[] takes part.
  * *records grows (its capacity too); returns their number.  Local. */
 int contact_set_records(const struct contact_set *contacts, const struct spheres *spheres,
                         const unsigned char *chosen, struct contact_record **records,
                         int *capacity);
+/* The same of those whose lower id is owned here, each contact on exactly one rank, and lies in
+ * begin .. end - 1.  Local. */
+int contact_set_records_of(const struct contact_set *contacts, const struct spheres *spheres,
+                           int64_t begin, int64_t end, struct contact_record **records,
+                           int *capacity);
+/* How many touching contacts have their lower id owned here.  Local. */
+int contact_set_count(const struct contact_set *contacts, const struct spheres *spheres);
 
 /* Puts a record's history where its pair (storage indices of first_id and second_id, of any
  * copies of them) is listed.  A pair that is not listed is a mistake of ours.  Local. */

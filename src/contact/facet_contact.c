@@ -295,23 +295,38 @@ void facet_contacts_search(struct facet_contacts *facets, const struct spheres *
 /* ---- Records
  * ---------------------------------------------------------------------------------- */
 
+static bool is_recorded(const struct facet_contacts *facets, int k,
+                        const struct spheres *spheres, int64_t begin, int64_t end)
+{
+    const int64_t id = spheres->id[facets->list[k].sphere];
+    return holds_history(&facets->list[k]) && id >= begin && id < end;
+}
+
 int facet_contacts_records(const struct facet_contacts *facets, const struct spheres *spheres,
-                           struct facet_contact_record **records)
+                           int64_t begin, int64_t end, struct facet_contact_record **records)
 {
     int n = 0;
     for (int k = 0; k < facets->n; k++)
-        n += holds_history(&facets->list[k]);
+        n += is_recorded(facets, k, spheres, begin, end);
     *records = array_resize(*records, 0, (size_t)n, sizeof **records);
     n = 0;
     for (int k = 0; k < facets->n; k++) {
         const struct facet_contact *contact = &facets->list[k];
-        if (!holds_history(contact))
+        if (!is_recorded(facets, k, spheres, begin, end))
             continue;
         struct facet_contact_record *record = &(*records)[n++];
         *record = (struct facet_contact_record){
             spheres->id[contact->sphere], contact->body, contact->feature, {0.0}};
         memcpy(record->history, contact->history, sizeof record->history);
     }
+    return n;
+}
+
+int facet_contacts_count(const struct facet_contacts *facets)
+{
+    int n = 0;
+    for (int k = 0; k < facets->n; k++)
+        n += holds_history(&facets->list[k]);
     return n;
 }
 

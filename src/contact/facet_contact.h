@@ -86,10 +86,12 @@ bool facet_contacts_meet(const struct facet_contacts *facets, const struct bodie
 /* Brings the search trees to where the bodies are. Local. */
 void facet_contacts_refit(struct facet_contacts *facets, const struct bodies *bodies);
 
-/* Records of all touching contacts; *records is grown (free it); returns their number.
- * Local. */
+/* Records of touching contacts of spheres whose id lies in begin .. end - 1; *records is resized
+ * (free it); returns their number. Local. */
 int facet_contacts_records(const struct facet_contacts *facets, const struct spheres *spheres,
-                           struct facet_contact_record **records);
+                           int64_t begin, int64_t end, struct facet_contact_record **records);
+/* Their number, of all spheres. Local. */
+int facet_contacts_count(const struct facet_contacts *facets);
 /* Empties the list, before spheres move in memory: what is to be kept is kept as records.
  * Local. */
 void facet_contacts_forget(struct facet_contacts *facets);

@@ -21,8 +21,6 @@ void migrate_init(struct migrate *migrate, const struct comm *comm)
 void migrate_clear(struct migrate *migrate)
 {
     comm_mail_clear(&migrate->mail);
-    free(migrate->contacts);
-    free(migrate->facets);
     migrate_forget(migrate);
     *migrate = (struct migrate){0};
 }
@@ -183,7 +181,8 @@ void migrate_spheres(struct migrate *migrate, const struct comm *comm,
                                       &migrate->contact_capacity);
         free(migrate->facets);
         migrate->facets = NULL;
-        migrate->n_facets = facet_contacts_records(facets, spheres, &migrate->facets);
+        migrate->n_facets =
+            facet_contacts_records(facets, spheres, 0, INT64_MAX, &migrate->facets);
         migrate->facet_capacity = migrate->n_facets;
     }
     comm_mail_begin(&migrate->mail);
@@ -193,6 +192,7 @@ void migrate_spheres(struct migrate *migrate, const struct comm *comm,
         pack_records(migrate, spheres, removed);
     comm_mail_exchange(&migrate->mail, comm);
     const int n_with_arrivals = unpack(migrate, spheres, migrate->n_before + migrate->n_born);
+    comm_mail_forget(&migrate->mail);
     migrate->n_born = 0;
     for (int i = 0; i < migrate->n_before; i++)
         migrate->moved[i] = i < spheres->n_owned && !migrate->leaves[i] ? i : -1;
@@ -220,6 +220,11 @@ void migrate_forget(struct migrate *migrate)
     free(migrate->moved);
     free(migrate->owner);
     free(migrate->leaves);
+    free(migrate->contacts);
+    free(migrate->facets);
+    migrate->contacts = NULL;
+    migrate->facets = NULL;
+    migrate->contact_capacity = migrate->facet_capacity = 0;
     migrate->id_before = NULL;
     migrate->moved = migrate->owner = NULL;
     migrate->leaves = NULL;

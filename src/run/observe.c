@@ -257,14 +257,6 @@ static int64_t add_pair_energy(const struct simulation *sim, struct exact_sum *n
     return n;
 }
 
-static int64_t count_facets(const struct simulation *sim)
-{
-    int64_t n = 0;
-    for (int k = 0; k < sim->facets.n; k++)
-        n += sim->facets.list[k].history[CONTACT_RADIUS_LANE] > 0.0;
-    return n;
-}
-
 /* Total over ranks of a rank's share. */
 static double total_of(const struct simulation *sim, const struct exact_sum *share)
 {
@@ -315,7 +307,7 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
     }
     counts[0] = sim->spheres.n_owned;
     counts[1] = add_pair_energy(sim, &sums[ENERGY_ELASTIC], &sums[ENERGY_SPRINGS]);
-    counts[2] = count_facets(sim);
+    counts[2] = facet_contacts_count(&sim->facets);
     facet_contacts_elastic_energy(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials,
                                   &sums[ENERGY_ELASTIC], &sums[ENERGY_SPRINGS]);
     /* A force works in half of the interval before the step and half of the one after: at the

@@ -365,13 +365,26 @@ static void unwrap_places(struct simulation *sim, double (*held)[3])
     free(held);
 }
 
+static int pairs_held(const void *from, int64_t begin, int64_t end,
+                      struct contact_record **records)
+{
+    const struct simulation *sim = from;
+    int capacity = 0;
+    return contact_set_records_of(&sim->contacts, &sim->spheres, begin, end, records,
+                                  &capacity);
+}
+
+static int facets_held(const void *from, int64_t begin, int64_t end,
+                       struct facet_contact_record **records)
+{
+    const struct simulation *sim = from;
+    return facet_contacts_records(&sim->facets, &sim->spheres, begin, end, records);
+}
+
 static int write_checkpoint(struct simulation *sim, const struct run_folder *folder,
                             const char *job_text)
 {
-    struct contact_record *contacts = NULL;
-    struct facet_contact_record *facets = NULL;
     struct observe_monitor *totals;
-    int capacity = 0;
     struct checkpoint checkpoint = {.folder = folder,
                                     .step = sim->step,
                                     .dt = sim->dt,
@@ -379,14 +392,12 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
                                     .spheres = &sim->spheres,
                                     .full = sim->materials.full,
                                     .ledger = sim->job->energy_ledger,
-                                    .removals = sim->removals.n > 0};
+                                    .removals = sim->removals.n > 0,
+                                    .held = {sim, pairs_held, facets_held}};
     checkpoint.title = array_string(sim->job->title);
     checkpoint.job_text = array_string(job_text);
-    checkpoint.n_contacts =
-        contact_set_records(&sim->contacts, &sim->spheres, NULL, &contacts, &capacity);
-    checkpoint.contacts = contacts;
-    checkpoint.n_facet_contacts = facet_contacts_records(&sim->facets, &sim->spheres, &facets);
-    checkpoint.facet_contacts = facets;
+    checkpoint.n_contacts = contact_set_count(&sim->contacts, &sim->spheres);
+    checkpoint.n_facet_contacts = facet_contacts_count(&sim->facets);
     struct exact_sum crossed[3];
     memcpy(crossed, &sim->observe.totals[OBSERVE_CROSSED_X], sizeof crossed);
     observe_crossings(sim);

@@ -159,49 +159,71 @@ static void tables_clear(struct table tables[N_TABLES])
         table_clear(&tables[k]);
 }
 
-/* Copies a rank's spheres into records (`pack`), or records into spheres. */
-static void move_spheres(struct table *table, const struct spheres *spheres, bool pack)
+/* Copies sphere i into a record (`pack`), or a record into sphere i. */
+static void move_sphere(const struct table *table, const struct spheres *spheres, int64_t i,
+                        unsigned char *record, bool pack)
 {
     for (int k = 0, f = 0; k < table->n_columns; k++, f++) {
         while ((sphere_fields[f].use & FIELD_SAVED) == 0)
             f++;
         const struct field_view view = sphere_view(spheres, f);
-        const size_t size = field_size(&sphere_fields[f]), offset = table->columns[k].offset;
-        for (int64_t i = 0; i < table->n; i++) {
-            unsigned char *record = table->records + (size_t)i * table->record_size + offset;
-            void *place = field_at(&view, i);
-            memcpy(pack ? record : place, pack ? place : record, size);
-        }
+        unsigned char *place = field_at(&view, i), *saved = record + table->columns[k].offset;
+        memcpy(pack ? saved : place, pack ? place : saved, field_size(&sphere_fields[f]));
     }
 }
 
-static void copy_records(struct table *table, int n, const void *records)
+static void collect_spheres(struct table *table, const void *from, int64_t begin, int64_t end)
 {
-    table->n = n;
-    table->records = array_allocate((size_t)n, table->record_size);
-    if (n > 0)
-        memcpy(table->records, records, (size_t)n * table->record_size);
+    const struct spheres *spheres = ((const struct checkpoint *)from)->spheres;
+    unsigned char *record = array_allocate(1, table->record_size);
+    for (int i = 0; i < spheres->n_owned; i++) {
+        if (spheres->id[i] < begin || spheres->id[i] >= end)
+            continue;
+        move_sphere(table, spheres, i, record, true);
+        table_append(table, record, 1);
+    }
+    free(record);
 }
 
-/* The state of all ranks, sorted into slices.  Collective. */
-static void collect(struct table tables[N_TABLES], const struct comm *comm,
-                    const struct checkpoint *checkpoint)
+static void collect_contacts(struct table *table, const void *from, int64_t begin, int64_t end)
 {
+    const struct checkpoint_contacts *held = &((const struct checkpoint *)from)->held;
+    struct contact_record *records = NULL;
+    const int n = held->pairs(held->from, begin, end, &records);
+    for (int k = 0; k < n; k++)
+        CHECK(records[k].first_id < records[k].second_id,
+              "a contact of %" PRId64 " and %" PRId64, records[k].first_id,
+              records[k].second_id);
+    table_append(table, records, n);
+    free(records);
+}
+
+static void collect_facet_contacts(struct table *table, const void *from, int64_t begin,
+                                   int64_t end)
+{
+    const struct checkpoint_contacts *held = &((const struct checkpoint *)from)->held;
+    struct facet_contact_record *records = NULL;
+    const int n = held->facets(held->from, begin, end, &records);
+    table_append(table, records, n);
+    free(records);
+}
+
+/* Tables that come from this checkpoint.  Collective. */
+static void tables_to_write(struct table tables[N_TABLES], const struct comm *comm,
+                            const struct checkpoint *checkpoint)
+{
+    static void (*const collect[N_TABLES])(struct table *, const void *, int64_t, int64_t) = {
+        collect_spheres, collect_contacts, collect_facet_contacts};
+    int64_t n_total[N_TABLES] = {checkpoint->spheres->n_owned, checkpoint->n_contacts,
+                                 checkpoint->n_facet_contacts};
+    comm_sum_int(comm, n_total, N_TABLES);
     tables_init(tables, checkpoint);
-    struct table *spheres = &tables[SPHERES];
-    spheres->n = checkpoint->spheres->n_owned;
-    spheres->records = array_allocate((size_t)spheres->n, spheres->record_size);
-    move_spheres(spheres, checkpoint->spheres, true);
-    for (int i = 0; i < checkpoint->n_contacts; i++) {
-        const struct contact_record *contact = &checkpoint->contacts[i];
-        CHECK(contact->first_id < contact->second_id, "a contact of %" PRId64 " and %" PRId64,
-              contact->first_id, contact->second_id);
+    for (int k = 0; k < N_TABLES; k++) {
+        tables[k].collect = collect[k];
+        tables[k].from = checkpoint;
+        tables[k].n_ids = checkpoint->next_id;
+        tables[k].n_total = n_total[k];
     }
-    copy_records(&tables[CONTACTS], checkpoint->n_contacts, checkpoint->contacts);
-    copy_records(&tables[FACET_CONTACTS], checkpoint->n_facet_contacts,
-                 checkpoint->facet_contacts);
-    for (int k = 0; k < N_TABLES; k++)
-        table_arrange(&tables[k], comm, checkpoint->next_id);
 }
 
 /* ---------------------------------------------------------------------------------- writing */
@@ -298,7 +320,7 @@ int checkpoint_write(const struct comm *comm, const char *path,
 {
     check_notes(comm, &checkpoint->notes);
     struct table tables[N_TABLES];
-    collect(tables, comm, checkpoint);
+    tables_to_write(tables, comm, checkpoint);
     const int n = checkpoint->n_monitors;
     struct checkpoint_monitor *totals = array_allocate((size_t)n, sizeof *totals);
     for (int i = 0; i < n; i++) {
@@ -515,7 +537,8 @@ static void place_spheres(struct spheres *spheres, struct table *table)
 {
     spheres_reserve(spheres, (int)table->n);
     spheres->n_owned = spheres->n_all = (int)table->n;
-    move_spheres(table, spheres, false);
+    for (int64_t i = 0; i < table->n; i++)
+        move_sphere(table, spheres, i, table->records + (size_t)i * table->record_size, false);
     spheres_pad(spheres);
 }
 

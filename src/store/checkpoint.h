@@ -47,6 +47,16 @@ struct checkpoint_monitor {
     struct exact_sum sum;
 };
 
+/* Where the contacts to be written come from: each asks for the records whose (lower) id lies in
+ * begin .. end - 1, in any order; *records, NULL before, becomes theirs (free it), and their number
+ * is returned. */
+struct checkpoint_contacts {
+    const void *from;
+    int (*pairs)(const void *from, int64_t begin, int64_t end, struct contact_record **records);
+    int (*facets)(const void *from, int64_t begin, int64_t end,
+                  struct facet_contact_record **records);
+};
+
 struct checkpoint {
     const struct run_folder *folder; /* the run's that writes it, NULL: nobody's */
     int64_t step;                    /* steps done: positions are those at step * dt */
@@ -58,9 +68,10 @@ struct checkpoint {
     bool full, ledger;       /* which lanes of history there are: set before reading, too */
     bool removals;           /* are some spheres to be taken out?  Likewise */
     int n_contacts;          /* records held here: see below */
-    struct contact_record *contacts;
     int n_facet_contacts;
+    struct contact_record *contacts; /* as read */
     struct facet_contact_record *facet_contacts;
+    struct checkpoint_contacts held; /* to write */
     int n_monitors; /* the same names on all ranks; sums are this rank's shares */
     struct checkpoint_monitor *monitors;
     struct notes notes; /* the same on all ranks */

@@ -112,7 +112,10 @@ static char *fill_in(const struct comm *comm, const struct shared_file *file,
     if (comm_agree(comm, h5.file >= 0) == 0)
         return h5.why;
     for (int t = 0; t < file->n_tables; t++)
-        table_write(&file->tables[t], &h5);
+        if (file->tables[t].collect != NULL)
+            table_stream(&file->tables[t], comm, &h5);
+        else
+            table_write(&file->tables[t], &h5);
     if (!shared_file_all_well(comm, &h5.why))
         abandon(comm, file, temporary, h5.why);
     h5_close(&h5);

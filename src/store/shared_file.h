@@ -26,7 +26,7 @@ struct shared_file {
     const void *content; /* given to it */
     int64_t size;        /* of it, without tables, at most [bytes] */
     int n_tables;
-    const struct table *tables; /* arranged */
+    struct table *tables; /* arranged, or streamed */
 };
 
 /* Returns REPORT_FINISHED, or REPORT_STORAGE with the reason said, the same on all ranks; then

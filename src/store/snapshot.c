@@ -362,7 +362,7 @@ int snapshot_write(const struct comm *comm, const char *folder, struct snapshot 
     if (comm->rank == 0)
         find_meshes(folder, snapshot);
     char *path = file_step_path(folder, snapshot->step);
-    const struct table tables[2] = {snapshot->spheres, snapshot->contacts};
+    struct table tables[2] = {snapshot->spheres, snapshot->contacts};
     const struct shared_file file = {
         .folder = snapshot->folder,
         .path = path,

@@ -3,6 +3,9 @@
  * work out alone, sorted there; then, the number of rows before being known, to the slices.  If
  * ids are spread unevenly the first exchange is uneven too, which costs memory for a moment and
  * nothing else.
+ *
+ * A part of a stream is a range of ids.  Its rows are written up to the last whole block; the
+ * last rank keeps the rest, which come first in the next part.
  */
 #include "store/table.h"
 
@@ -15,13 +18,16 @@
 #include "store/crc32.h"
 #include "store/h5.h"
 
+enum { PART_BYTES = 1 << 24 };
+
 static const struct field CHECKSUM = {"checksum",  "1", "CRC-32 of each block of 256 rows",
                                       FIELD_INT64, 1,   0};
 
 void table_init(struct table *table, const char *name, size_t record_size,
                 int (*compare)(const void *, const void *))
 {
-    *table = (struct table){.name = name, .record_size = record_size, .compare = compare};
+    *table = (struct table){
+        .name = name, .record_size = record_size, .compare = compare, .part_bytes = PART_BYTES};
 }
 
 void table_clear(struct table *table)
@@ -41,17 +47,25 @@ static int64_t n_blocks(int64_t n_rows)
     return (n_rows + TABLE_BLOCK - 1) / TABLE_BLOCK;
 }
 
-/* First row of rank q's slice. */
-static int64_t slice_begin(const struct table *table, int q, int n_ranks)
+/* First row of rank q's slice of n_rows. */
+static int64_t slice_begin(const struct table *table, int64_t n_rows, int q, int n_ranks)
 {
     const int64_t unit = table->packed ? H5_PIECE_ROWS : TABLE_BLOCK;
-    const int64_t row = (table->n_total + unit - 1) / unit * q / n_ranks * unit;
-    return row < table->n_total ? row : table->n_total;
+    const int64_t row = (n_rows + unit - 1) / unit * q / n_ranks * unit;
+    return row < n_rows ? row : n_rows;
 }
 
 static unsigned char *record(const struct table *table, int64_t i)
 {
     return table->records + (size_t)i * table->record_size;
+}
+
+void table_append(struct table *table, const void *records, int64_t n)
+{
+    const size_t used = (size_t)table->n * table->record_size;
+    ARRAY_GROW(table->records, used + (size_t)n * table->record_size, table->capacity);
+    memcpy(table->records + used, records, (size_t)n * table->record_size);
+    table->n += n;
 }
 
 /* --------------------------------------------------------------------------------- exchange */
@@ -66,6 +80,7 @@ static void receive(struct table *table, struct comm_mail *mail, const struct co
     for (int q = 0; q < comm->n_ranks; q++)
         n_bytes += mail->in[q].n;
     table->records = array_allocate(n_bytes, 1);
+    table->capacity = n_bytes;
     table->n = (int64_t)(n_bytes / table->record_size);
     size_t at = 0;
     for (int q = 0; q < comm->n_ranks; q++) {
@@ -74,16 +89,18 @@ static void receive(struct table *table, struct comm_mail *mail, const struct co
     }
 }
 
+/* Ids lie in begin .. end - 1, and some below, which are kept from the part before. */
 static void send_by_id(struct table *table, struct comm_mail *mail, const struct comm *comm,
-                       int64_t n_ids)
+                       int64_t begin, int64_t end)
 {
-    const int64_t ids_per_rank = n_ids / comm->n_ranks + 1;
+    const int64_t ids_per_rank = (end - begin) / comm->n_ranks + 1;
     comm_mail_begin(mail);
     for (int64_t i = 0; i < table->n; i++) {
         const int64_t id = table_id(table, i);
-        CHECK(id >= 0 && id < n_ids, "%s hold id %lld of %lld", table->name, (long long)id,
-              (long long)n_ids);
-        comm_mail_pack(mail, (int)(id / ids_per_rank), record(table, i), table->record_size);
+        CHECK(id >= 0 && id < end, "%s hold id %lld of %lld", table->name, (long long)id,
+              (long long)end);
+        const int64_t q = id < begin ? 0 : (id - begin) / ids_per_rank;
+        comm_mail_pack(mail, (int)q, record(table, i), table->record_size);
     }
     receive(table, mail, comm);
 }
@@ -96,31 +113,46 @@ static void sort(struct table *table)
               "%s: id %lld is held twice", table->name, (long long)table_id(table, i));
 }
 
-static void send_by_row(struct table *table, struct comm_mail *mail, const struct comm *comm)
+/* What is beyond n_rows goes to the last rank. */
+static void send_by_row(struct table *table, struct comm_mail *mail, const struct comm *comm,
+                        int64_t n_rows)
 {
     const int64_t first = comm_sum_before(comm, table->n);
     comm_mail_begin(mail);
     for (int64_t i = 0, q = 0; i < table->n; i++) {
-        while (first + i >= slice_begin(table, (int)q + 1, comm->n_ranks))
+        while (q < comm->n_ranks - 1 &&
+               first + i >= slice_begin(table, n_rows, (int)q + 1, comm->n_ranks))
             q++;
         comm_mail_pack(mail, (int)q, record(table, i), table->record_size);
     }
     receive(table, mail, comm);
 }
 
-void table_arrange(struct table *table, const struct comm *comm, int64_t n_ids)
+static int64_t sum_over_ranks(const struct comm *comm, int64_t n)
 {
-    table->n_total = table->n;
-    comm_sum_int(comm, &table->n_total, 1);
+    comm_sum_int(comm, &n, 1);
+    return n;
+}
+
+/* Sorts all records with ids below `end`, of which n_rows are cut into slices. */
+static void arrange(struct table *table, const struct comm *comm, int64_t begin, int64_t end,
+                    int64_t n_rows)
+{
     struct comm_mail mail;
     comm_mail_init(&mail, comm);
     if (comm->n_ranks > 1)
-        send_by_id(table, &mail, comm, n_ids);
+        send_by_id(table, &mail, comm, begin, end);
     sort(table);
     if (comm->n_ranks > 1)
-        send_by_row(table, &mail, comm);
+        send_by_row(table, &mail, comm, n_rows);
     comm_mail_clear(&mail);
-    table->begin = slice_begin(table, comm->rank, comm->n_ranks);
+}
+
+void table_arrange(struct table *table, const struct comm *comm, int64_t n_ids)
+{
+    table->n_total = sum_over_ranks(comm, table->n);
+    arrange(table, comm, 0, n_ids, table->n_total);
+    table->begin = slice_begin(table, table->n_total, comm->rank, comm->n_ranks);
 }
 
 /* ------------------------------------------------------------------------------------ files */
@@ -209,6 +241,44 @@ void table_write(const struct table *table, struct h5 *h5)
 {
     for (int k = 0; k < table->n_columns; k++)
         write_column(table, k, h5);
+}
+
+/* Writes those of this rank's rows that lie in its slice of n_rows, of which `before` are in the
+ * file already, and keeps the others. */
+static void write_part(struct table *table, const struct comm *comm, struct h5 *h5,
+                       int64_t before, int64_t n_rows)
+{
+    const int64_t begin = slice_begin(table, n_rows, comm->rank, comm->n_ranks);
+    const int64_t n = slice_begin(table, n_rows, comm->rank + 1, comm->n_ranks) - begin;
+    const int64_t kept = table->n - n;
+    table->begin = before + begin;
+    table->n = n;
+    table_write(table, h5);
+    memmove(table->records, record(table, n), (size_t)kept * table->record_size);
+    table->n = kept;
+}
+
+void table_stream(struct table *table, const struct comm *comm, struct h5 *h5)
+{
+    const int64_t bytes = table->n_total * (int64_t)table->record_size;
+    const int64_t n_parts = bytes / table->part_bytes / comm->n_ranks + 1;
+    const int64_t ids = table->n_ids / n_parts + 1;
+    int64_t written = 0;
+    table->n = 0;
+    for (int64_t part = 0; part < n_parts; part++) {
+        const int64_t begin = part * ids, end = begin + ids;
+        table->collect(table, table->from, begin, end);
+        const int64_t n = sum_over_ranks(comm, table->n);
+        const int64_t n_rows = part == n_parts - 1 ? n : n / TABLE_BLOCK * TABLE_BLOCK;
+        arrange(table, comm, begin, end, n_rows);
+        write_part(table, comm, h5, written, n_rows);
+        written += n_rows;
+    }
+    CHECK(written == table->n_total, "%lld rows of %s in place of %lld", (long long)written,
+          table->name, (long long)table->n_total);
+    free(table->records);
+    table->records = NULL;
+    table->capacity = 0;
 }
 
 /* What says of a packed piece where it belongs. */
@@ -304,8 +374,8 @@ static void read_column(struct table *table, int k, struct h5 *h5)
 
 void table_read(struct table *table, struct h5 *h5, const struct comm *comm, int64_t n_ids)
 {
-    table->begin = slice_begin(table, comm->rank, comm->n_ranks);
-    table->n = slice_begin(table, comm->rank + 1, comm->n_ranks) - table->begin;
+    table->begin = slice_begin(table, table->n_total, comm->rank, comm->n_ranks);
+    table->n = slice_begin(table, table->n_total, comm->rank + 1, comm->n_ranks) - table->begin;
     free(table->records);
     table->records = array_allocate((size_t)table->n, table->record_size);
     for (int k = 0; k < table->n_columns; k++)

@@ -9,6 +9,9 @@
  * table are whole pieces (store/h5.h), which their ranks pack.  A drawback: below TABLE_BLOCK
  * rows a rank, or a piece, some ranks have nothing to do.  All that one rank sends another must
  * fit 2 GiB.
+ *
+ * Records are here all at once (table_arrange), or are collected while the file is written, part by
+ * part (table_stream), which takes no more memory for more rows and gives the same bytes.
  */
 #ifndef TREMIE_STORE_TABLE_H
 #define TREMIE_STORE_TABLE_H
@@ -40,12 +43,22 @@ struct table {
     int64_t n_total;                              /* records on all ranks */
     int64_t begin, n;                             /* those here: begin .. begin + n - 1 */
     unsigned char *records;
+    size_t capacity; /* of records, as table_append() fills them [bytes] */
+    /* Of a table that is streamed: appends the records whose id lies in begin .. end - 1, in any
+     * order; ids are below n_ids.  Else NULL. */
+    void (*collect)(struct table *table, const void *from, int64_t begin, int64_t end);
+    const void *from;
+    int64_t n_ids;
+    int64_t part_bytes; /* that a rank holds of it at a time, about */
 };
 
 void table_init(struct table *table, const char *name, size_t record_size,
                 int (*compare)(const void *, const void *));
 void table_clear(struct table *table);
 void table_add_column(struct table *table, const struct field *field, size_t offset);
+
+/* Adds n records behind those that are here.  Local. */
+void table_append(struct table *table, const void *records, int64_t n);
 
 /* Sorts the n records that each rank holds into slices; ids lie in 0 .. n_ids - 1, keys are
  * unique. Collective. */
@@ -60,6 +73,9 @@ void table_declare(const struct table *table, struct h5 *h5);
 void table_pack(const struct table *table, const struct comm *comm, struct h5 *h5);
 /* Writes this rank's slice, unless packed, and its checksums.  Local. */
 void table_write(const struct table *table, struct h5 *h5);
+/* Collects and writes all n_total rows with their checksums; none are here afterwards.
+ * Collective. */
+void table_stream(struct table *table, const struct comm *comm, struct h5 *h5);
 
 /* Finds n_total, with all columns and checksums compared in type and length.  Local. */
 void table_measure(struct table *table, struct h5 *h5);

@@ -88,6 +88,30 @@ static void add_notes(struct checkpoint *checkpoint)
     notes_add_ints(&checkpoint->notes, "insertion-1", 2, ints);
 }
 
+static int pairs_of(const void *from, int64_t begin, int64_t end,
+                    struct contact_record **records)
+{
+    const struct checkpoint *all = from;
+    int n = 0;
+    *records = array_allocate((size_t)all->n_contacts, sizeof **records);
+    for (int k = 0; k < all->n_contacts; k++)
+        if (all->contacts[k].first_id >= begin && all->contacts[k].first_id < end)
+            (*records)[n++] = all->contacts[k];
+    return n;
+}
+
+static int facets_of(const void *from, int64_t begin, int64_t end,
+                     struct facet_contact_record **records)
+{
+    const struct checkpoint *all = from;
+    int n = 0;
+    *records = array_allocate((size_t)all->n_facet_contacts, sizeof **records);
+    for (int k = 0; k < all->n_facet_contacts; k++)
+        if (all->facet_contacts[k].id >= begin && all->facet_contacts[k].id < end)
+            (*records)[n++] = all->facet_contacts[k];
+    return n;
+}
+
 static void build(struct checkpoint *checkpoint, struct spheres *spheres,
                   const struct comm *comm)
 {
@@ -116,6 +140,7 @@ static void build(struct checkpoint *checkpoint, struct spheres *spheres,
             fill_history(record->history, id);
         }
     }
+    checkpoint->held = (struct checkpoint_contacts){checkpoint, pairs_of, facets_of};
     checkpoint->n_monitors = N_MONITORS;
     checkpoint->monitors = array_allocate(N_MONITORS, sizeof *checkpoint->monitors);
     for (int k = 0; k < N_MONITORS; k++)
@@ -399,6 +424,7 @@ TEST(nothing_at_all)
                                     .ledger = true,
                                     .title = title,
                                     .job_text = job};
+    checkpoint.held = (struct checkpoint_contacts){&checkpoint, pairs_of, facets_of};
     EXPECT(checkpoint_write(&comm, path, &checkpoint) == REPORT_FINISHED);
     struct checkpoint read = {.spheres = &spheres, .full = true, .ledger = true};
     EXPECT(checkpoint_read(&comm, path, &read) == REPORT_FINISHED);

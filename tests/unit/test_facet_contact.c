@@ -582,8 +582,8 @@ static bool is_same_state(const struct scene *a, const struct scene *b)
 {
     const size_t n = (size_t)a->spheres.n_owned;
     struct facet_contact_record *records[2] = {NULL, NULL};
-    const int n_a = facet_contacts_records(&a->facets, &a->spheres, &records[0]);
-    const int n_b = facet_contacts_records(&b->facets, &b->spheres, &records[1]);
+    const int n_a = facet_contacts_records(&a->facets, &a->spheres, 0, INT64_MAX, &records[0]);
+    const int n_b = facet_contacts_records(&b->facets, &b->spheres, 0, INT64_MAX, &records[1]);
     bool same = n_a == n_b && memcmp(a->spheres.motion, b->spheres.motion, n * 64) == 0 &&
                 memcmp(a->spheres.spin, b->spheres.spin, n * 64) == 0 &&
                 memcmp(a->spheres.force, b->spheres.force, n * 64) == 0;
@@ -616,7 +616,8 @@ static bool is_same_state(const struct scene *a, const struct scene *b)
 static void carry_through_records(struct scene *scene)
 {
     struct facet_contact_record *records = NULL;
-    const int n = facet_contacts_records(&scene->facets, &scene->spheres, &records);
+    const int n =
+        facet_contacts_records(&scene->facets, &scene->spheres, 0, INT64_MAX, &records);
     int *sphere = calloc((size_t)n + 1, sizeof *sphere);
     for (int k = 0; k < n; k++)
         sphere[k] = (int)(records[k].id - 100) / 3;

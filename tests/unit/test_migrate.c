@@ -276,7 +276,7 @@ static void expect_memories(const struct run *run,
 static void expect_facet_memories(const struct run *run)
 {
     struct facet_contact_record *records = NULL;
-    const int n = facet_contacts_records(&run->facets, &run->spheres, &records);
+    const int n = facet_contacts_records(&run->facets, &run->spheres, 0, INT64_MAX, &records);
     int n_expected = 0;
     for (int i = 0; i < run->spheres.n_owned; i++)
         n_expected += holds_facet(run->spheres.id[i]);

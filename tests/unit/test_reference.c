@@ -346,8 +346,8 @@ static int compare_contacts(const struct simulation *sim, const struct reference
             CHECK_FAIL("history of spheres %d and %d differs at step %d",
                        (int)records[k].first_id, (int)records[k].second_id, (int)sim->step);
     }
-    int64_t once =
-        contact_set_records(&sim->contacts, &sim->spheres, NULL, &records, &capacity);
+    int64_t once = contact_set_records_of(&sim->contacts, &sim->spheres, 0, INT64_MAX, &records,
+                                          &capacity);
     comm_sum_int(sim->comm, &once, 1);
     for (int a = 0; a < r->n_here; a++) {
         for (int b = 0; b < r->n_here; b++)
@@ -372,8 +372,9 @@ static void compare_sums(const struct simulation *sim, const struct exact_sum *s
 static int compare_facets(const struct simulation *sim, const struct reference *r)
 {
     struct facet_contact_record *own = NULL, *reference = NULL;
-    int64_t n = facet_contacts_records(&sim->facets, &sim->spheres, &own);
-    const int n_reference = facet_contacts_records(&r->facets, &r->spheres, &reference);
+    int64_t n = facet_contacts_records(&sim->facets, &sim->spheres, 0, INT64_MAX, &own);
+    const int n_reference =
+        facet_contacts_records(&r->facets, &r->spheres, 0, INT64_MAX, &reference);
     for (int k = 0; k < n; k++) {
         bool found = false;
         for (int m = 0; m < n_reference; m++)
