@@ -86,8 +86,8 @@ bool facet_contacts_meet(const struct facet_contacts *facets, const struct bodie
 /* Brings the search trees to where the bodies are. Local. */
 void facet_contacts_refit(struct facet_contacts *facets, const struct bodies *bodies);
 
-/* Records of touching contacts of spheres whose id lies in begin .. end - 1; *records is resized
- * (free it); returns their number. Local. */
+/* Records of touching contacts of spheres whose id lies in begin .. end - 1; *records is
+ * resized (free it); returns their number. Local. */
 int facet_contacts_records(const struct facet_contacts *facets, const struct spheres *spheres,
                            int64_t begin, int64_t end, struct facet_contact_record **records);
 /* Their number, of all spheres. Local. */

@@ -65,7 +65,8 @@ struct facet_kernel_run {
 };
 
 /* What a kernel works on: reads motion, spin and material, adds to the spheres' force rows
- * (with the ledger on also what friction and damping dissipate, in lanes 3 and 7), to loads; brings history to the present and notes overlaps. */
+ * (with the ledger on also what friction and damping dissipate, in lanes 3 and 7), to loads;
+ * brings history to the present and notes overlaps. */
 struct facet_kernel_work {
     const struct sphere_row *motion, *spin;
     struct sphere_row *force;

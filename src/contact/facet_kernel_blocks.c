@@ -150,8 +150,8 @@ LANES_INLINE void add_term(const struct block *block, int s, const lanes_mask li
 }
 
 /* Gives the bodies the force on them, its torque (`twist` besides the force's), the work of
- * their motion and what springs took up.  `force` becomes what the exact sums took, so that the spheres' is the opposite
- * to the last bit. */
+ * their motion and what springs took up.  `force` becomes what the exact sums took, so that
+ * the spheres' is the opposite to the last bit. */
 LANES_INLINE void load_bodies(const struct facet_kernel_work *work, const struct block *block,
                               lanes force[3], const lanes twist[3], const lanes *wound)
 {

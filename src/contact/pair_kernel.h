@@ -29,10 +29,10 @@ enum { PAIR_KERNEL_AHEAD = 128 };
  *
  * Read: motion, spin, material, pairs.  Added to: the force rows of both spheres (force,
  * torque, and with the ledger on half of what friction and damping dissipate in spare lanes 3
- * and 7); with the ledger on what the tangential law loses, by pairs whose first is owned.
- * Brought to the present: history.  Force rows must not hold -0: a pair that does not touch adds zeros of either sign.
- * A pair that touched in the last step must still be listed in this one, or the ledger misses
- * the end of the contact.
+ * and 7); with the ledger on the work that springs took up, of pairs whose first is owned.
+ * Brought to the present: history.  Force rows must not hold -0: a pair that does not touch
+ * adds zeros of either sign. A pair that touched in the last step must still be listed in this
+ * one, or the ledger misses the end of the contact.
  */
 struct pair_kernel_work {
     int n_padded;

@@ -20,7 +20,8 @@
  * Nothing in it depends on rank count, machine or clock (those are in the log and the series).
  *
  * Format versions count up.  Until there is a release a program reads its own alone and says
- * which one a file has; since version 4 what the tangential law loses is a total, not a sphere's.
+ * which one a file has; since version 4 what the tangential law loses is a total, not a
+ * sphere's.
  *
  * Writing: space is reserved and agreed on, the file is written under a temporary name, forced
  * to the disk, renamed, its folder forced to the disk.  Reading verifies every checksum.
@@ -47,9 +48,9 @@ struct checkpoint_monitor {
     struct exact_sum sum;
 };
 
-/* Where the contacts to be written come from: each asks for the records whose (lower) id lies in
- * begin .. end - 1, in any order; *records, NULL before, becomes theirs (free it), and their number
- * is returned. */
+/* Where the contacts to be written come from: each asks for the records whose (lower) id lies
+ * in begin .. end - 1, in any order; *records, NULL before, becomes theirs (free it), and
+ * their number is returned. */
 struct checkpoint_contacts {
     const void *from;
     int (*pairs)(const void *from, int64_t begin, int64_t end, struct contact_record **records);

@@ -243,8 +243,8 @@ void table_write(const struct table *table, struct h5 *h5)
         write_column(table, k, h5);
 }
 
-/* Writes those of this rank's rows that lie in its slice of n_rows, of which `before` are in the
- * file already, and keeps the others. */
+/* Writes those of this rank's rows that lie in its slice of n_rows, of which `before` are in
+ * the file already, and keeps the others. */
 static void write_part(struct table *table, const struct comm *comm, struct h5 *h5,
                        int64_t before, int64_t n_rows)
 {

@@ -10,8 +10,9 @@
  * rows a rank, or a piece, some ranks have nothing to do.  All that one rank sends another must
  * fit 2 GiB.
  *
- * Records are here all at once (table_arrange), or are collected while the file is written, part by
- * part (table_stream), which takes no more memory for more rows and gives the same bytes.
+ * Records are here all at once (table_arrange), or are collected while the file is written,
+ * part by part (table_stream), which takes no more memory for more rows and gives the same
+ * bytes.
  */
 #ifndef TREMIE_STORE_TABLE_H
 #define TREMIE_STORE_TABLE_H
@@ -44,8 +45,8 @@ struct table {
     int64_t begin, n;                             /* those here: begin .. begin + n - 1 */
     unsigned char *records;
     size_t capacity; /* of records, as table_append() fills them [bytes] */
-    /* Of a table that is streamed: appends the records whose id lies in begin .. end - 1, in any
-     * order; ids are below n_ids.  Else NULL. */
+    /* Of a table that is streamed: appends the records whose id lies in begin .. end - 1, in
+     * any order; ids are below n_ids.  Else NULL. */
     void (*collect)(struct table *table, const void *from, int64_t begin, int64_t end);
     const void *from;
     int64_t n_ids;
