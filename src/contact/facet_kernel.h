@@ -28,8 +28,8 @@ enum {
     FACET_KERNEL_PAD = 8, /* runs are multiples of this */
     FACET_KERNEL_AHEAD =
         32, /* contacts behind a run's last that must be there, to be fetched */
-    FACET_KERNEL_SUMS =
-        8, /* force on a body (3) [N], torque (3) [N m], its work, work that springs took up [J] */
+    /* Force on a body (3) [N], torque (3) [N m], its work, work that springs took up [J]. */
+    FACET_KERNEL_SUMS = 8,
 };
 
 /* What a body feels in a step, while it is being summed. */
