@@ -48,8 +48,9 @@ struct facet_work {
     struct facet_local local;
     enum isa isa;
     struct facet_kernel_batch batch;
-    struct facet_kernel_load *loads; /* one a body */
-    int n_summed;                    /* contacts in them, at most */
+    struct contact_geometry_shares shares[FACET_KERNEL_BATCH]; /* of bodies that deform */
+    struct facet_kernel_load *loads;                           /* one a body */
+    int n_summed;                                              /* contacts in them, at most */
     struct facet_contact dummy;
     bool has_groups; /* and runs */
     int n_runs, run_capacity, n_plain, plain_capacity, faced_capacity;
@@ -400,6 +401,26 @@ static void make_room(struct facet_contacts *facets, int n)
     facets->work->n_summed += n;
 }
 
+/* Gives the force of a batch's contact to the corners of a surface that deforms.  Shares are
+ * rounded as the sums round them; the last one is what is left, so that they add up to the
+ * force. */
+static void push_skin(const struct step *step, int k)
+{
+    const struct facet_kernel_batch *batch = &step->facets->work->batch;
+    const struct body_skin *skin = step->bodies->list[batch->contact[k]->body].skin;
+    const struct contact_geometry_shares *shares = &step->facets->work->shares[k];
+    if (skin == NULL)
+        return;
+    for (int x = 0; x < 3; x++) {
+        struct exact_sum *last = &skin->force[shares->vertices[shares->n - 1]][x];
+        exact_sum_add(last, batch->force[x][k]);
+        for (int m = 0; m < shares->n - 1; m++) {
+            const double share = shares->parts[m] * batch->force[x][k];
+            exact_sum_add(last, -exact_sum_add(&skin->force[shares->vertices[m]][x], share));
+        }
+    }
+}
+
 static void empty_batch(const struct step *step)
 {
     struct facet_kernel_batch *batch = &step->facets->work->batch;
@@ -407,12 +428,34 @@ static void empty_batch(const struct step *step)
         return;
     make_room(step->facets, batch->n);
     step->kernel.batch(step->kernel_work, batch);
+    for (int k = 0; k < batch->n; k++)
+        push_skin(step, k);
+    batch->n = 0;
 }
 
 static void apply_run(const struct step *step, const struct facet_kernel_run *run)
 {
     make_room(step->facets, run->n);
     step->kernel.run(step->kernel_work, run);
+}
+
+static struct vec3 skin_velocity(const struct body_skin *skin,
+                                 const struct contact_geometry_shares *shares)
+{
+    struct vec3 velocity = {0.0, 0.0, 0.0};
+    for (int m = 0; m < shares->n; m++)
+        velocity = vec3_axpy(velocity, shares->parts[m], skin->velocity[shares->vertices[m]]);
+    return velocity;
+}
+
+/* How easily the surface yields to a force at the shares' point [1/kg]. */
+static double skin_yield(const struct body_skin *skin,
+                         const struct contact_geometry_shares *shares)
+{
+    double yield = 0.0;
+    for (int m = 0; m < shares->n; m++)
+        yield += shares->parts[m] * shares->parts[m] * skin->inverse_mass[shares->vertices[m]];
+    return yield;
 }
 
 /* Puts a contact into the batch; one that ends has no overlap, and what its spring still held
@@ -429,7 +472,13 @@ static void add_contact(const struct step *step, int entry, const struct contact
     const struct facet_kernel_work *work = step->kernel_work;
     const struct vec3 normal = vec3_scale(-1.0, at->normal); /* sphere to body */
     struct vec3 wall = {0.0, 0.0, 0.0}, turns = {0.0, 0.0, 0.0};
-    if (body->moves || body->surface_runs) {
+    double yield = body->rigid != NULL ? rigid_yield(body->rigid, at->point, normal) : 0.0;
+    if (body->skin != NULL) {
+        struct contact_geometry_shares *shares = &step->facets->work->shares[k];
+        *shares = contact_geometry_shares(&body->mesh, contact->feature, at->point);
+        wall = skin_velocity(body->skin, shares);
+        yield = skin_yield(body->skin, shares);
+    } else if (body->moves || body->surface_runs) {
         wall = body_velocity(body, at->point, normal);
         turns = body_spin(body);
     }
@@ -449,7 +498,7 @@ static void add_contact(const struct step *step, int entry, const struct contact
         batch->turns[x][k] = values[3][x];
     }
     batch->overlap[k] = overlap;
-    batch->yield[k] = body->rigid != NULL ? rigid_yield(body->rigid, at->point, normal) : 0.0;
+    batch->yield[k] = yield;
 }
 
 /* What a body that is not there still holds ends. */
@@ -487,7 +536,7 @@ static bool are_plain(const struct facet_contact *entries, int n, const struct b
 {
     const struct body *body = &bodies->list[entries->body];
     return n == 1 && entries->feature < body->mesh.n_faces && body->rigid == NULL &&
-           body->surface == NULL;
+           body->surface == NULL && body->skin == NULL;
 }
 
 /* By face, then in order. */

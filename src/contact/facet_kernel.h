@@ -52,6 +52,7 @@ struct facet_kernel_batch {
     double wall[3][FACET_KERNEL_BATCH];   /* velocity of the body's surface there [m/s] */
     double turns[3][FACET_KERNEL_BATCH];  /* its angular velocity [rad/s] */
     double yield[FACET_KERNEL_BATCH];     /* inverse mass of the body there [1/kg] */
+    double force[3][FACET_KERNEL_BATCH];  /* out: on the body, as its sums took it [N] */
 } __attribute__((aligned(64)));
 
 /* Spheres before one face of a body that does not yield and whose surface does not run. */
@@ -78,7 +79,7 @@ struct facet_kernel_work {
     double overlap_max;                /* largest overlap / radius: grows [-] */
 };
 
-/* A batch is empty afterwards. */
+/* A batch is done with afterwards, but for its forces. */
 struct facet_kernel {
     void (*batch)(struct facet_kernel_work *work, struct facet_kernel_batch *batch);
     void (*run)(struct facet_kernel_work *work, const struct facet_kernel_run *run);

@@ -30,7 +30,8 @@ struct block {
     lanes motion[8], spin[8];                                     /* rows of the spheres */
     lanes normal[3], point[3], overlap, wall[3], turns[3], yield; /* as in a batch */
     bool one_load;                                                /* all lanes have the same */
-    bool moves; /* some body of the block does */
+    bool moves;     /* some body of the block does */
+    lanes given[3]; /* force on the body, as its sums took it [N] */
 };
 
 LANES_INLINE void load_rows(lanes rows[8], const double *const at[WIDTH])
@@ -209,7 +210,7 @@ LANES_INLINE void add_rows(const struct facet_kernel_work *work, const struct bl
 }
 
 /* All that follows from where and how spheres touch. */
-LANES_INLINE lanes press(const struct facet_kernel_work *work, const struct block *block,
+LANES_INLINE lanes press(const struct facet_kernel_work *work, struct block *block,
                          struct contact_law_choice choice, lanes deepest)
 {
     const struct contact_law_meeting meeting = meeting_of(block);
@@ -230,8 +231,10 @@ LANES_INLINE lanes press(const struct facet_kernel_work *work, const struct bloc
     }
     load_bodies(work, block, force, twist, choice.ledger ? &result.wound : NULL);
 #pragma GCC unroll 3
-    for (int x = 0; x < 3; x++)
+    for (int x = 0; x < 3; x++) {
+        block->given[x] = force[x];
         rows[x] = -force[x];
+    }
     rows[3] = choice.ledger ? result.lost_friction : none;
     rows[7] = choice.ledger ? result.lost_damping : none;
     add_rows(work, block, rows);
@@ -297,8 +300,10 @@ LANES_INLINE void apply_batch(struct facet_kernel_work *work, struct facet_kerne
         block_of_batch(&block, batch, k);
         load_spheres(work, &block);
         deepest = press(work, &block, choice, deepest);
+#pragma GCC unroll 3
+        for (int x = 0; x < 3; x++)
+            lanes_store(&batch->force[x][k], block.given[x]);
     }
-    batch->n = 0;
     note_deepest(work, deepest);
 }
 

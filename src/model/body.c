@@ -251,7 +251,7 @@ void bodies_place(struct bodies *bodies, int64_t step, double dt)
         body->exists = body_exists(body, step, dt);
         if (body->surface != NULL)
             run_surface(body, half_before, dt);
-        if (!body->moves)
+        if (!body->moves || body->skin != NULL)
             continue;
         if (body->rigid != NULL) {
             place_forced(body);

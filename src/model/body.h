@@ -11,12 +11,21 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/exact_sum.h"
 #include "base/vec3.h"
 #include "model/mesh.h"
 
 struct job;
 struct job_motion;
 struct rigid;
+
+/* How the surface of a body that deforms moves, and what pushes it: at each corner of the mesh
+ * (vertices below n_corners). */
+struct body_skin {
+    struct vec3 *velocity;        /* half a step before [m/s] */
+    double *inverse_mass;         /* [1/kg] */
+    struct exact_sum (*force)[3]; /* of this step's contacts, added to by them [N] */
+};
 
 struct body {
     char *name;
@@ -25,7 +34,8 @@ struct body {
     bool moves;
     int n_motions; /* prescribed, in the order in which they act */
     struct job_motion *motions;
-    struct rigid *rigid; /* of a body that forces move, else NULL */
+    struct rigid *rigid;    /* of a body that forces move, else NULL */
+    struct body_skin *skin; /* of a body that deforms, else NULL */
     /* Present motion, set by bodies_place(): the point x of the body moves at
      * velocity_now + spin_now x (x - pivot_now). */
     struct vec3 velocity_now; /* [m/s] */
@@ -57,7 +67,7 @@ void bodies_build(struct bodies *bodies, const struct job *job);
 void bodies_clear(struct bodies *bodies);
 /* Puts all moving bodies where they are at time step * dt, with the velocity they have at
  * (step - 1/2) * dt as the spheres' half-step velocities have; those that forces move are where
- * their state says.  Bodies at rest cost nothing. */
+ * their state says, those that deform are not placed here.  Bodies at rest cost nothing. */
 void bodies_place(struct bodies *bodies, int64_t step, double dt);
 /* Velocity of the body at a point. */
 struct vec3 body_drift(const struct body *body, struct vec3 point);

@@ -2,6 +2,7 @@
  * Spheres against facets: one contact where there is one, nothing felt at seams, the same bits
  * whatever is listed, loads on bodies, energies.
  */
+#include "base/array.h"
 #include "check.h"
 #include "contact/facet_contact.h"
 #include "job/job.h"
@@ -956,6 +957,115 @@ TEST(an_elastic_impact_on_a_plane_is_hertz)
     EXPECT_NEAR(energy_most, 0.5 * mass * 0.04, 1e-3 * 0.5 * mass * 0.04);
     EXPECT_NEAR(sphere_velocity(&scene.spheres, 0)[2], 0.2, 1e-4);
     scene_clear(&scene);
+}
+
+/* ---- Surfaces that deform
+ * --------------------------------------------------------------------- */
+
+/* Makes a body's corners move and yield one by one. */
+static struct body_skin *make_skin(struct body *body)
+{
+    const size_t n = (size_t)body->mesh.n_corners;
+    struct body_skin *skin = array_allocate(1, sizeof *skin);
+    skin->velocity = array_allocate(n, sizeof *skin->velocity);
+    skin->inverse_mass = array_allocate(n, sizeof *skin->inverse_mass);
+    skin->force = array_allocate(n, sizeof *skin->force);
+    body->skin = skin;
+    body->moves = true;
+    return skin;
+}
+
+static void free_skin(struct body *body)
+{
+    free(body->skin->velocity);
+    free(body->skin->inverse_mass);
+    free(body->skin->force);
+    free(body->skin);
+    body->skin = NULL;
+}
+
+/* The corners of a warped square together feel the opposite of the sphere's force, to the last
+ * bit, and its moment. */
+TEST(a_skin_takes_what_the_sphere_gives)
+{
+    struct vec3 vertices[] = {{-3, -3, 0}, {3, -3, 0.2}, {3, 3, 0}, {-3, 3, 0.3}};
+    int facets[1][4] = {{0, 1, 2, 3}};
+    struct job_body square = mesh_body(4, vertices, 1, facets);
+    struct scene scene;
+    scene_build(&scene, RUBBER, 0.5, 0.7, 1, &square, 1, 1.0);
+    struct body *body = &scene.bodies.list[0];
+    struct body_skin *skin = make_skin(body);
+    EXPECT(body->mesh.n_corners == 4 && body->mesh.n_vertices == 5);
+    for (int v = 0; v < 4; v++) {
+        skin->velocity[v] = (struct vec3){0.3 * v, -0.1 * v, 0.5};
+        skin->inverse_mass[v] = 1e-3 / (1.0 + v);
+    }
+    for (int k = 0; k < 20; k++) {
+        const struct vec3 centre = {0.1 * k - 1.0, 0.7 - 0.05 * k, 1.05};
+        put_sphere(&scene, 0, centre, (struct vec3){1, 2, -3}, (struct vec3){4, 5, 6});
+        for (int v = 0; v < 4; v++)
+            for (int x = 0; x < 3; x++)
+                skin->force[v][x] = (struct exact_sum){{0}, 0, 0};
+        search(&scene, false);
+        apply(&scene);
+        struct exact_sum total[3] = {{{0}, 0, 0}};
+        struct vec3 moment = {0, 0, 0};
+        for (int v = 0; v < 4; v++) {
+            double f[3];
+            for (int x = 0; x < 3; x++) {
+                exact_sum_merge(&total[x], &skin->force[v][x]);
+                f[x] = exact_sum_value(&skin->force[v][x]);
+            }
+            moment = vec3_add(moment, vec3_cross(vertices[v], (struct vec3){f[0], f[1], f[2]}));
+        }
+        const struct body_load *load = &scene.facets.loads[0];
+        const double *force = scene.spheres.force[0].lane;
+        EXPECT(force[2] > 0.0);
+        for (int x = 0; x < 3; x++)
+            EXPECT(exact_sum_value(&total[x]) == -force[x]);
+        const double torque[3] = {moment.x, moment.y, moment.z};
+        for (int x = 0; x < 3; x++) {
+            EXPECT_NEAR(torque[x], exact_sum_value(&load->torque[x]), 1e-9 * force[2]);
+            scene.facets.loads[0].torque[x] = (struct exact_sum){{0}, 0, 0};
+        }
+    }
+    free_skin(body);
+    scene_clear(&scene);
+}
+
+/* Where corners move as the sphere does nothing slips, and as a rigid body nothing is
+ * different. */
+TEST(a_skin_that_turns_is_a_body_that_turns)
+{
+    struct vec3 vertices[] = {{-3, -3, 0}, {3, -3, 0}, {3, 3, 0}, {-3, 3, 0}};
+    int facets[2][4] = {{0, 1, 2, -1}, {0, 2, 3, -1}};
+    double forces[2][8];
+    for (int deforms = 0; deforms < 2; deforms++) {
+        struct job_body plate = mesh_body(4, vertices, 2, facets);
+        struct scene scene;
+        scene_build(&scene, RUBBER, 0.5, 0.7, 1, &plate, 1, 1.0);
+        struct body *body = &scene.bodies.list[0];
+        const struct vec3 spin = {0.2, -0.1, 0.7}, drift = {1.0, 0.5, -0.2};
+        body->moves = true;
+        body->velocity_now = drift;
+        body->spin_now = spin;
+        if (deforms) {
+            struct body_skin *skin = make_skin(body);
+            for (int v = 0; v < 4; v++)
+                skin->velocity[v] = vec3_add(drift, vec3_cross(spin, vertices[v]));
+        }
+        put_sphere(&scene, 0, (struct vec3){1.0, -0.4, 0.99}, (struct vec3){1, 2, -3},
+                   (struct vec3){4, 5, 6});
+        search(&scene, false);
+        apply(&scene);
+        memcpy(forces[deforms], scene.spheres.force[0].lane, sizeof forces[0]);
+        if (deforms)
+            free_skin(body);
+        scene_clear(&scene);
+    }
+    EXPECT(forces[0][2] > 0.0 && forces[0][0] != 0.0);
+    for (int k = 0; k < 8; k++)
+        EXPECT_NEAR(forces[1][k], forces[0][k], 1e-12 * forces[0][2]);
 }
 
 /* ---- Curved surfaces
