@@ -21,7 +21,13 @@
 #include "job/schema.h"
 #include "job/yaml_tree.h"
 
-enum { PATH_LENGTH = 64, WORD_LENGTH = 24, FOLDER_LENGTH = 200, KEYS_MOST = 100 };
+enum {
+    PATH_LENGTH = 64,
+    WORD_LENGTH = 24,
+    TEXT_LENGTH = 100,
+    FOLDER_LENGTH = 200,
+    KEYS_MOST = 100
+};
 
 /* The values of a key. */
 struct column {
@@ -159,6 +165,14 @@ static void values_take(struct plan *plan, struct column *column,
         column->nodes[k] = value;
 }
 
+/* Is it made of letters, digits and points, as keys are? */
+static bool is_path(const char *key)
+{
+    static const char usual[] = "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ"
+                                "0123456789_.-";
+    return isalpha((unsigned char)key[0]) && strspn(key, usual) == strlen(key);
+}
+
 /* The last word of a key that does not count: "radius" of spheres.0.radius. */
 static char *last_word(const char *key)
 {
@@ -241,12 +255,18 @@ static void column_add(struct plan *plan, const struct sweep_item *item,
     ARRAY_GROW(plan->columns, plan->n_columns + 1, plan->column_capacity);
     struct column *column = &plan->columns[plan->n_columns++];
     const struct yaml_tree_node *values = yaml_tree_find(entry, "values");
+    char shown[YAML_TREE_SHOWN];
     *column =
         (struct column){.item = item, .entry = entry, .place = yaml_tree_find(entry, "key")};
     if (item->key == NULL || item->key[0] == '\0') {
         refuse(plan, entry,
                "%s.key is missing; the key that varies, like spheres.0.radius, is expected",
                path);
+        return;
+    }
+    if (!is_path(item->key)) {
+        refuse(plan, column->place, "%s.key is '%s'; a path like spheres.0.radius is expected",
+               path, yaml_tree_shown(shown, item->key));
         return;
     }
     if (covers("sweep", item->key))
@@ -377,6 +397,16 @@ static char *folder_make(const struct plan *plan, const int *chosen, int variant
     return array_format("variant_%d", variant + 1);
 }
 
+/* A value for a line of text: as it is written, or, where that is long or steers a terminal,
+ * as the folder calls it. */
+static const char *value_shown(const struct column *column, int k)
+{
+    bool fits = strlen(column->texts[k]) <= TEXT_LENGTH;
+    for (const char *c = column->texts[k]; *c != '\0'; c++)
+        fits = fits && (unsigned char)*c >= ' ' && *c != 127;
+    return fits ? column->texts[k] : column->words[k];
+}
+
 static void variant_make(struct sweep *sweep, const struct plan *plan, int variant)
 {
     int *chosen = array_allocate((size_t)plan->n_columns, sizeof *chosen);
@@ -389,7 +419,7 @@ static void variant_make(struct sweep *sweep, const struct plan *plan, int varia
     for (int c = 0; c < plan->n_columns; c++) {
         const size_t at = (size_t)variant * (size_t)plan->n_columns + (size_t)c;
         sweep->nodes[at] = plan->columns[c].nodes[chosen[c]];
-        sweep->values[at] = array_string(plan->columns[c].texts[chosen[c]]);
+        sweep->values[at] = array_string(value_shown(&plan->columns[c], chosen[c]));
     }
     sweep->folders[variant] = folder_make(plan, chosen, variant);
     free(chosen);

@@ -36,7 +36,7 @@ struct sweep {
     int n_keys, n_variants;
     char **keys, **names;
     char **folders; /* of the variants */
-    char **values;  /* n_variants x n_keys, as the job writes them */
+    char **values;  /* n_variants x n_keys, as the job writes them; long ones v1, v2, ... */
     /* The same where they stand in the tree, and where the keys do; NULL when it has gone. */
     const struct yaml_tree_node **nodes, **places;
 };

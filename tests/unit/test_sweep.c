@@ -113,6 +113,16 @@ TEST(keys_together)
     free(text);
 }
 
+TEST(values_that_do_not_fit_a_line)
+{
+    EXPECT(sweep_from("sweep: [{key: title, values: [a/b, \"\\e[0m\"]},\n"
+                      "        {key: gravity.2, name: pull, values: [-1]}]\n",
+                      0, NULL));
+    EXPECT_STRING(sweep_value(&sweep, 1, 0), "a/b");
+    EXPECT_STRING(sweep_value(&sweep, 2, 0), "v2");
+    EXPECT_STRING(sweep.folders[1], "title_v2_pull_-1");
+}
+
 TEST(a_variant_is_the_job_with_its_values)
 {
     struct job variant, by_hand;
@@ -188,6 +198,8 @@ TEST(what_is_refused)
          "sweep.0.count is missing; a whole number from 2 on is expected"},
         {"sweep: [{key: seed, from: 0, to: 3, count: 3, spacing: log}]\n", 1, 27,
          "sweep.0: equal ratios do not reach 0; values above it are expected"},
+        {"sweep: [{key: \"spheres/../\\e[0m\", values: [1]}]\n", 1, 15,
+         "sweep.0.key is 'spheres/../?[0m'; a path like spheres.0.radius is expected"},
         {"sweep: [{key: sweep.0.key, values: [1]}]\n", 1, 15,
          "sweep.0.key is the sweep itself; another key is expected"},
         {"sweep:\n  - {key: gravity, values: [[0, 0, 0]]}\n"
