@@ -5,6 +5,7 @@
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 #include <sys/stat.h>
 
 #include "base/array.h"
@@ -45,6 +46,15 @@ double *records_column(const struct series *series, const char *name_format, ...
     va_end(arguments);
     const int index = series_column_index(series, name);
     return index >= 0 ? copy_column(series, index) : NULL;
+}
+
+char *records_unit(const char *unit)
+{
+    const bool plain = strcmp(unit, "1") == 0 || unit[0] == '\0';
+    char *text = array_format("%s%s", plain ? "" : "_", plain ? "" : unit);
+    for (char *c = text; *c != '\0'; c++)
+        *c = *c == '/' || *c == ' ' ? '_' : *c;
+    return text;
 }
 
 /* What a column says as a whole. */

@@ -11,6 +11,9 @@ int records_read(struct series *series, const char *run_folder, const char *tabl
 /* A column as an array, which the caller frees; NULL when there is none. */
 double *records_column(const struct series *series, const char *name_format, ...)
     __attribute__((format(printf, 2, 3)));
+/* A unit as headings of files have it at their end, "_m_s" of m/s; "" of a pure number.  The
+ * caller frees it. */
+char *records_unit(const char *unit);
 /* Sum, mean and largest of a column, last value; not-a-number when there is no such column or
  * no row.  Rows where the value is not a number are left out. */
 double records_sum(const struct series *series, const char *name);

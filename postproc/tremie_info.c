@@ -320,11 +320,8 @@ static int write_csv(const struct series *series, const char *path)
     sheet_init(&sheet);
     for (int k = 0; k < series->n_columns; k++) {
         const struct series_column *column = &series->columns[k];
-        const bool plain = strcmp(column->unit, "1") == 0 || column->unit[0] == '\0';
-        char *unit = array_string(column->unit);
-        for (char *c = unit; *c != '\0'; c++)
-            *c = *c == '/' || *c == ' ' ? '_' : *c;
-        sheet_heading(&sheet, "%s%s%s", column->name, plain ? "" : "_", plain ? "" : unit);
+        char *unit = records_unit(column->unit);
+        sheet_heading(&sheet, "%s%s", column->name, unit);
         free(unit);
     }
     for (int i = 0; i < series->n_rows * series->n_columns; i++)

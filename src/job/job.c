@@ -1,7 +1,7 @@
 /*
- * From a file to a struct job: read the YAML, lay the overrides over it, slip the libraries
- * under it, fill the struct by the schema, check what concerns several keys, and keep only the
- * materials that something is made of.
+ * From a file to a struct job: read the YAML, lay the overrides and a variant of the sweep over
+ * it, slip the libraries under it, fill the struct by the schema, check what concerns several
+ * keys, and keep only the materials that something is made of.
  *
  * Materials are sorted by name and pairs by material, so the indices that states on disk hold
  * do not depend on the order in a file or on which library gave them.
@@ -19,63 +19,12 @@
 #include "job/job_keys.h"
 #include "job/path_file.h"
 #include "job/schema.h"
+#include "job/sweep.h"
 #include "job/yaml_tree.h"
 
-enum { MAX_CLASSES = 32, MAX_LIBRARIES = 16, KEY_LENGTH = 64, LAST_INDEX = 100000 };
+enum { MAX_CLASSES = 32, MAX_LIBRARIES = 16, KEY_LENGTH = 64 };
 
 /* ------------------------------------------------------------------------------- overrides */
-
-/* The child that a step of a dotted path names; made where a mapping lacks it. */
-static struct yaml_tree_node *step_into(struct yaml_tree *tree, struct yaml_tree_node *node,
-                                        const char *key)
-{
-    if (node->kind == YAML_TREE_LIST) {
-        char *end;
-        const long i = strtol(key, &end, 10);
-        return *end != '\0' || end == key || i < 0 || i > LAST_INDEX
-                   ? NULL
-                   : yaml_tree_child(node, (int)i);
-    }
-    if (node->kind != YAML_TREE_MAPPING)
-        return NULL;
-    struct yaml_tree_node *child = yaml_tree_find(node, key);
-    if (child == NULL) {
-        child = yaml_tree_new(tree, YAML_TREE_MAPPING, node);
-        yaml_tree_append(node, yaml_tree_text(tree, key, strlen(key)), child);
-    }
-    return child;
-}
-
-/* Puts a value where the dotted path `keys` leads. */
-static bool value_set(struct yaml_tree *tree, struct yaml_tree_node *root, const char *keys,
-                      const struct yaml_tree_node *value)
-{
-    struct yaml_tree_node *node = root;
-    while (node != NULL && *keys != '\0') {
-        char key[KEY_LENGTH];
-        const size_t length = strcspn(keys, ".");
-        if (length == 0 || length >= KEY_LENGTH)
-            return false;
-        memcpy(key, keys, length);
-        key[length] = '\0';
-        node = step_into(tree, node, key);
-        if (node != NULL && node->key_line == 0) {
-            node->key_line = 1;
-            node->key_column = 1;
-            node->file = value->file;
-        }
-        keys += length + (keys[length] == '.');
-    }
-    if (node == NULL)
-        return false;
-    struct yaml_tree_node *next = node->next;
-    const char *key = node->key;
-    *node = *value;
-    node->key = key;
-    node->next = next;
-    node->key_line = node->key_column = 1;
-    return true;
-}
 
 /* Lays one `key=value` over the job; the value's nodes live in `tree`. */
 static void override_apply(struct yaml_tree *tree, struct yaml_tree_node *root,
@@ -95,11 +44,8 @@ static void override_apply(struct yaml_tree *tree, struct yaml_tree_node *root,
         return;
     char *keys = array_string(text);
     keys[equals - text] = '\0';
-    if (!value_set(tree, root, keys, tree->root))
-        mistakes_add(
-            mistakes, "--set", 1, 1,
-            "'%s' leads nowhere; a path like spheres.0.radius is expected (lists count from 0)",
-            yaml_tree_shown(shown, keys));
+    const struct yaml_tree_node place = {.file = "--set", .line = 1, .column = 1};
+    yaml_tree_put(tree, root, keys, tree->root, &place, mistakes);
     free(keys);
 }
 
@@ -244,8 +190,7 @@ static void libraries_read(struct yaml_tree *trees, struct yaml_tree_node *root,
 
 /* ------------------------------------------------------------------------------- filling */
 
-/* "runs/../hopper.yaml" -> "hopper" */
-static char *job_name(const char *path)
+char *job_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
     char *name = array_string(slash != NULL ? slash + 1 : path);
@@ -498,26 +443,77 @@ static bool job_fill(struct job *job, const char *path, const struct yaml_tree_n
     return fine;
 }
 
-bool job_read(struct job *job, const char *path, int n_overrides,
-              const struct job_override *overrides, struct mistakes *mistakes)
+/* A job file with what the command line lays over it. */
+struct text {
+    struct yaml_tree tree; /* root NULL: it cannot be read */
+    int n_values;
+    struct yaml_tree *values;
+};
+
+static void text_read(struct text *text, const char *path, int n_overrides,
+                      const struct job_override *overrides, struct mistakes *mistakes)
 {
-    struct yaml_tree tree, libraries[MAX_LIBRARIES] = {{0}};
-    struct yaml_tree *values = array_allocate((size_t)n_overrides, sizeof *values);
+    text->n_values = n_overrides;
+    text->values = array_allocate((size_t)n_overrides, sizeof *text->values);
+    (void)yaml_tree_read(&text->tree, path, mistakes);
+    for (int i = 0; text->tree.root != NULL && i < n_overrides; i++)
+        override_apply(&text->values[i], text->tree.root, overrides[i].text, mistakes);
+}
+
+static void text_clear(struct text *text)
+{
+    for (int i = 0; i < text->n_values; i++)
+        yaml_tree_clear(&text->values[i]);
+    free(text->values);
+    yaml_tree_clear(&text->tree);
+}
+
+bool job_read_variant(struct job *job, const char *path, int n_overrides,
+                      const struct job_override *overrides, int variant,
+                      struct mistakes *mistakes)
+{
+    struct yaml_tree libraries[MAX_LIBRARIES] = {{0}};
+    struct sweep sweep = {0};
+    struct text text;
     *job = (struct job){0};
-    bool fine = yaml_tree_read(&tree, path, mistakes) || tree.root != NULL;
+    text_read(&text, path, n_overrides, overrides, mistakes);
+    bool fine = text.tree.root != NULL;
+    if (fine && variant > 0)
+        fine = sweep_read(&sweep, &text.tree, mistakes);
     if (fine) {
-        for (int i = 0; i < n_overrides; i++)
-            override_apply(&values[i], tree.root, overrides[i].text, mistakes);
-        libraries_read(libraries, tree.root, mistakes);
-        fine = job_fill(job, path, tree.root, true, mistakes);
+        if (variant > 0)
+            sweep_apply(&sweep, variant, &text.tree, mistakes);
+        libraries_read(libraries, text.tree.root, mistakes);
+        fine = job_fill(job, path, text.tree.root, true, mistakes);
     }
     for (int i = 0; i < MAX_LIBRARIES; i++)
         yaml_tree_clear(&libraries[i]);
-    for (int i = 0; i < n_overrides; i++)
-        yaml_tree_clear(&values[i]);
-    free(values);
-    yaml_tree_clear(&tree);
+    sweep_clear(&sweep);
+    text_clear(&text);
     return fine;
+}
+
+bool job_read(struct job *job, const char *path, int n_overrides,
+              const struct job_override *overrides, struct mistakes *mistakes)
+{
+    return job_read_variant(job, path, n_overrides, overrides, 0, mistakes);
+}
+
+bool job_read_sweep(struct sweep *sweep, const char *path, int n_overrides,
+                    const struct job_override *overrides, struct mistakes *mistakes)
+{
+    struct text text;
+    struct mistakes others; /* those of the text itself are found again with the job */
+    mistakes_init(&others);
+    *sweep = (struct sweep){0};
+    text_read(&text, path, n_overrides, overrides, &others);
+    const bool fine = text.tree.root == NULL || sweep_read(sweep, &text.tree, mistakes);
+    for (int i = 0; i < n_overrides && fine; i++)
+        sweep_refuse(sweep, overrides[i].text, mistakes);
+    sweep_forget_places(sweep);
+    text_clear(&text);
+    mistakes_clear(&others);
+    return mistakes->n == 0;
 }
 
 bool job_read_text(struct job *job, const char *path, const char *text,
@@ -593,6 +589,10 @@ static const char reference_head[] =
     "material, pair by pair for pairs. `--set KEY=VALUE` on the command line wins over\n"
     "both; it takes the same keys with numbers from 0 for the elements of lists, as in\n"
     "`--set spheres.0.radius=0.12`.\n"
+    "\n"
+    "A job with a `sweep` is a study: variants of the job, each with other values of some\n"
+    "keys, each with a run of its own in a folder inside the study's that is named after\n"
+    "them. A variant is the job with its values put where `--set` would put them.\n"
     "\n"
     "The folder of a run holds `job.yaml`: the job as used, libraries and defaults written\n"
     "out. On a resume `title`, `time.end`, `decomposition`, `checkpoint`, `output`, `watch`\n"

@@ -13,6 +13,7 @@
 #include "base/vec3.h"
 
 struct mistakes;
+struct sweep;
 
 /* Where an item begins in the job file, for messages; 0: not there.  Not a key. */
 struct job_place {
@@ -458,11 +459,22 @@ struct job_override {
  */
 bool job_read(struct job *job, const char *path, int n_overrides,
               const struct job_override *overrides, struct mistakes *mistakes);
-/* The same from a text that job_write() made; `path` is where the job came from.  Reads no
+/* The same of a variant of its sweep, counted from 1; 0: of the job without its sweep. */
+bool job_read_variant(struct job *job, const char *path, int n_overrides,
+                      const struct job_override *overrides, int variant,
+                      struct mistakes *mistakes);
+/* The sweep of a job file, with no variant where there is none, or where the file cannot be
+ * read at all, which job_read tells.  Lists the mistakes of the sweep alone.  Local. */
+bool job_read_sweep(struct sweep *sweep, const char *path, int n_overrides,
+                    const struct job_override *overrides, struct mistakes *mistakes);
+/* A job from a text that job_write() made; `path` is where the job came from.  Reads no
  * other file. Local. */
 bool job_read_text(struct job *job, const char *path, const char *text,
                    struct mistakes *mistakes);
 void job_clear(struct job *job);
+
+/* The name of a job by its path: "hopper" of runs/../hopper.yaml.  The caller frees it. */
+char *job_name(const char *path);
 
 /* Groups of spheres: those of `spheres`, of `insert`, and of the job that this one starts from,
  * counted on in this order. */

@@ -10,6 +10,7 @@
 #include <math.h>
 
 #include "job/job.h"
+#include "job/sweep.h"
 
 #define FAR 1e6 /* [m], [m/s], [rad/s] */
 
@@ -55,6 +56,7 @@ static const char *const section_kinds[] = {"plane", "disc", "rectangle", NULL};
 static const char *const materials_only[] = {"material", NULL};
 static const char *const splits[] = {"material", "size", NULL};
 static const char *const drives[] = {"slide", "turn", NULL};
+static const char *const spacings[] = {"linear", "log", NULL};
 static const char *const fulls[] = {"wait", "stop", NULL};
 static const char *const directions[] = {"x", "y", "z", NULL};
 static const char *const leavers[] = {"stop", "remove", "ignore", NULL};
@@ -884,14 +886,44 @@ static const struct schema_key watch_keys[] = {
      .unit = "1", .standard = "0.1", BETWEEN(0.0, 1e6), AT(struct job, watch.energy)},
     END};
 
+#define SWEEP_KEYS                                                                             \
+    {"key", SCHEMA_TEXT, "the key that varies, as for --set: `spheres.0.radius`",              \
+     AT(struct sweep_item, key)},                                                              \
+        {"name", SCHEMA_NAME,                                                                  \
+         "what it is called in folders and tables; by default the last word of `key`",         \
+         AT(struct sweep_item, name)},                                                         \
+        {"values", SCHEMA_ELSEWHERE, "its values, whatever the key takes",                     \
+         .word = "a list of values"},                                                          \
+        {"from", SCHEMA_TEXT,                                                                  \
+         "or its first value of `count`, a number with or without a unit",                     \
+         AT(struct sweep_item, from)},                                                         \
+        {"to", SCHEMA_TEXT, "the last one, in the same unit", AT(struct sweep_item, to)},      \
+        {"count", SCHEMA_INT, "how many", BETWEEN(2.0, SWEEP_MOST),                            \
+         AT(struct sweep_item, count)},                                                        \
+    {                                                                                          \
+        "spacing", SCHEMA_CHOICE,                                                              \
+            "equal steps or equal ratios between them; values are rounded to 12 digits",       \
+            .standard = "linear", .choices = spacings, AT(struct sweep_item, spacing)          \
+    }
+
+static const struct schema_key together_keys[] = {SWEEP_KEYS, END};
+
+const struct schema_key job_keys_sweep[] = {
+    SWEEP_KEYS,
+    {"together", SCHEMA_LIST,
+     "instead of `key`: keys that vary together, each with as many values as the others",
+     UP_TO(100.0), .inside = together_keys, LIST_AT(struct sweep_item, together, n_together)},
+    END};
+
 const struct schema_key job_keys[] = {
     {"title", SCHEMA_TEXT, "what people call the job", .standard = "", AT(struct job, title)},
     {"dimension", SCHEMA_CHOICE, "spheres move in three dimensions", .standard = "3",
      .choices = dimensions},
-    {"include", SCHEMA_INCLUDE,
+    {"include", SCHEMA_ELSEWHERE,
      .help =
          "libraries of materials and pairs, relative to the job file; what the job says wins, "
-         "then what a later library says"},
+         "then what a later library says",
+     .word = "the path of a file, or a list of them,"},
     {"time", SCHEMA_GROUP, "how long and in which steps", .required = true,
      .inside = time_keys},
     {"start", SCHEMA_GROUP,
@@ -952,4 +984,8 @@ const struct schema_key job_keys[] = {
      .standard = "4096", BETWEEN(1.0, 1e9), AT(struct job, order_every)},
     {"testing", SCHEMA_GROUP, "for tests of reproducibility; changes no result",
      .inside = testing_keys},
+    {"sweep", SCHEMA_ELSEWHERE,
+     "a study: a run for every combination of the values of these keys, of the first the slowest; "
+     "an empty list is none",
+     .word = "a list of mappings (- key: value)", .inside = job_keys_sweep},
     END};

@@ -232,8 +232,8 @@ const char *schema_expected(const struct schema_key *key, char text[SCHEMA_EXPEC
         snprintf(text, SCHEMA_EXPECTED,
                  "a mapping of at most %.0f names to mappings (name: {key: value})", key->max);
         return text;
-    case SCHEMA_INCLUDE:
-        return "the path of a file, or a list of them,";
+    case SCHEMA_ELSEWHERE:
+        return key->word;
     }
     return "";
 }
@@ -660,7 +660,7 @@ static void value_read(const struct item *item)
         else
             elements_read(item);
         break;
-    case SCHEMA_INCLUDE:
+    case SCHEMA_ELSEWHERE:
         break;
     }
     if (item->key->given_size == sizeof(bool))

@@ -33,9 +33,9 @@ enum schema_type {
     SCHEMA_FACETS,    /* int (*)[4] and a count: a list of 3 or 4 indices, the fourth else -1 */
     SCHEMA_GROUP,     /* a mapping whose values go to the same struct, or to one inside it */
     SCHEMA_LIST,      /* pointer and count: a list of mappings */
-    SCHEMA_NAMED,   /* pointer and count: a mapping of at most `max` names to mappings; the name
+    SCHEMA_NAMED, /* pointer and count: a mapping of at most `max` names to mappings; the name
                      is the element's first member */
-    SCHEMA_INCLUDE, /* handled before the schema: described here only */
+    SCHEMA_ELSEWHERE, /* read elsewhere: described here only; `word` says what is expected */
 };
 
 enum schema_bound {

@@ -56,9 +56,9 @@ static void rows_write(FILE *out, const struct schema_key *table, const char *pa
         snprintf(path, sizeof path, "%s%s", parent, key->name);
         row_write(out, table, key, path);
         snprintf(inner, sizeof inner, "%.150s%s", path,
-                 key->type == SCHEMA_LIST    ? "[]."
-                 : key->type == SCHEMA_NAMED ? ".NAME."
-                                             : ".");
+                 key->type == SCHEMA_LIST || key->type == SCHEMA_ELSEWHERE ? "[]."
+                 : key->type == SCHEMA_NAMED                               ? ".NAME."
+                                                                           : ".");
         if (has_inside(key))
             rows_write(out, key->inside, inner);
     }

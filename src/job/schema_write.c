@@ -167,7 +167,7 @@ static void value_write(const struct page *page, const struct schema_key *key, c
     case SCHEMA_GROUP:
     case SCHEMA_LIST:
     case SCHEMA_NAMED:
-    case SCHEMA_INCLUDE:
+    case SCHEMA_ELSEWHERE:
         CHECK(false, "%s is no value", key->name);
     }
     fputc('\n', out);
@@ -205,7 +205,7 @@ static void elements_write(struct page *page, const struct schema_key *key, cons
 
 static bool is_present(const struct schema_key *key, int kind, const char *from)
 {
-    if (key->type == SCHEMA_INCLUDE || (key->kinds != 0 && (key->kinds >> kind & 1u) == 0))
+    if (key->type == SCHEMA_ELSEWHERE || (key->kinds != 0 && (key->kinds >> kind & 1u) == 0))
         return false;
     for (size_t i = 0; i < key->given_size; i++)
         if (from[key->given + i] != 0)

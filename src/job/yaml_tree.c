@@ -22,7 +22,9 @@
 
 enum {
     CHUNK_BYTES = 64 * 1024,
-    REPORTED = 20 /* tabs or duplicate keys; more would not help */
+    REPORTED = 20, /* tabs or duplicate keys; more would not help */
+    KEY_LENGTH = 64,
+    LAST_INDEX = 100000
 };
 
 struct yaml_tree_chunk {
@@ -122,6 +124,69 @@ const struct yaml_tree_node *yaml_tree_nearest(const struct yaml_tree_node *root
         path += length + (path[length] == '.');
     }
     return node;
+}
+
+/* The child that a step of a dotted path names; made where a mapping lacks it. */
+static struct yaml_tree_node *step_into(struct yaml_tree *tree, struct yaml_tree_node *node,
+                                        const char *key, const struct yaml_tree_node *place)
+{
+    if (node->kind == YAML_TREE_LIST) {
+        char *end;
+        const long i = strtol(key, &end, 10);
+        return *end != '\0' || end == key || i < 0 || i > LAST_INDEX
+                   ? NULL
+                   : yaml_tree_child(node, (int)i);
+    }
+    if (node->kind != YAML_TREE_MAPPING)
+        return NULL;
+    struct yaml_tree_node *child = yaml_tree_find(node, key);
+    if (child == NULL) {
+        child = yaml_tree_new(tree, YAML_TREE_MAPPING, place);
+        child->key_line = place->line;
+        child->key_column = place->column;
+        yaml_tree_append(node, yaml_tree_text(tree, key, strlen(key)), child);
+    }
+    return child;
+}
+
+/* The node at a dotted path, made where it can be; NULL where the path leads nowhere. */
+static struct yaml_tree_node *node_ensure(struct yaml_tree *tree, struct yaml_tree_node *root,
+                                          const char *path, const struct yaml_tree_node *place)
+{
+    struct yaml_tree_node *node = root;
+    while (node != NULL && *path != '\0') {
+        char key[KEY_LENGTH];
+        const size_t length = strcspn(path, ".");
+        if (length == 0 || length >= KEY_LENGTH)
+            return NULL;
+        memcpy(key, path, length);
+        key[length] = '\0';
+        node = step_into(tree, node, key, place);
+        path += length + (path[length] == '.');
+    }
+    return node;
+}
+
+void yaml_tree_put(struct yaml_tree *tree, struct yaml_tree_node *root, const char *path,
+                   const struct yaml_tree_node *value, const struct yaml_tree_node *place,
+                   struct mistakes *mistakes)
+{
+    char shown[YAML_TREE_SHOWN];
+    struct yaml_tree_node *node = node_ensure(tree, root, path, place);
+    if (node == NULL) {
+        mistakes_add(
+            mistakes, place->file, place->line, place->column,
+            "'%s' leads nowhere; a path like spheres.0.radius is expected (lists count from 0)",
+            yaml_tree_shown(shown, path));
+        return;
+    }
+    struct yaml_tree_node *next = node->next;
+    const char *key = node->key;
+    *node = *value;
+    node->key = key;
+    node->next = next;
+    node->key_line = place->line;
+    node->key_column = place->column;
 }
 
 const char *yaml_tree_shown(char shown[YAML_TREE_SHOWN], const char *text)

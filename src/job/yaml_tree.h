@@ -55,6 +55,11 @@ const struct yaml_tree_node *yaml_tree_nearest(const struct yaml_tree_node *root
 /* Appends a child; `key` (kept, not copied) for mappings, else NULL. */
 void yaml_tree_append(struct yaml_tree_node *parent, const char *key,
                       struct yaml_tree_node *child);
+/* Puts a value where a dotted path leads, or lists that it leads nowhere; mappings that are
+ * missing on the way are made in `tree`.  In messages the key stands where `place` does. */
+void yaml_tree_put(struct yaml_tree *tree, struct yaml_tree_node *root, const char *path,
+                   const struct yaml_tree_node *value, const struct yaml_tree_node *place,
+                   struct mistakes *mistakes);
 /* A new node of this tree that stands where `place` does. */
 struct yaml_tree_node *yaml_tree_new(struct yaml_tree *tree, enum yaml_tree_kind kind,
                                      const struct yaml_tree_node *place);

@@ -18,6 +18,7 @@
 #include "job/job.h"
 #include "run/control.h"
 #include "run/inflow.h"
+#include "run/intake.h"
 #include "run/options.h"
 #include "run/simulation.h"
 #include "run/step.h"
@@ -88,8 +89,7 @@ static int open_folder(struct drive *drive)
     if (drive->comm->rank == 0)
         words[0] = look_at_restart(drive->options->restart);
     if (drive->comm->rank == 0 && words[0] == REPORT_FINISHED) {
-        char *path = drive->options->out != NULL ? array_string(drive->options->out)
-                                                 : array_format("runs/%s", drive->job->name);
+        char *path = intake_folder(drive->options);
         bool resumes = false;
         words[0] = run_folder_open(&drive->folder, path, drive->job_text,
                                    (drive->options->fresh ? RUN_FOLDER_FRESH : 0) |

@@ -6,6 +6,7 @@
 
 #include "base/array.h"
 #include "base/report.h"
+#include "job/sweep.h"
 #include "run/wall_limit.h"
 
 static const struct {
@@ -51,6 +52,18 @@ static bool read_wall(struct options *options, const char *text)
     return false;
 }
 
+static bool read_variant(struct options *options, const char *text)
+{
+    char *end;
+    const long number = strtol(text, &end, 10);
+    options->variant = number > 0 && number <= SWEEP_MOST ? (int)number : 0;
+    if (end != text && *end == '\0' && options->variant > 0)
+        return true;
+    report_error("--variant %s is no number of one; a whole number from 1 on is expected",
+                 text);
+    return false;
+}
+
 /* One option with its value; *used is how many words it took. */
 static bool read_option(struct options *options, const char *word, const char *value, int *used)
 {
@@ -67,9 +80,10 @@ static bool read_option(struct options *options, const char *word, const char *v
             return true;
         }
     }
-    static const char *const with_value[] = {"--set", "--out", "--restart", "--isa", "--wall"};
+    static const char *const with_value[] = {"--set", "--out",  "--restart",
+                                             "--isa", "--wall", "--variant"};
     int which = -1;
-    for (int k = 0; k < 5; k++)
+    for (int k = 0; k < 6; k++)
         which = strcmp(word, with_value[k]) == 0 ? k : which;
     if (which < 0) {
         report_error("unknown option %s; see tremie --help", word);
@@ -88,8 +102,10 @@ static bool read_option(struct options *options, const char *word, const char *v
         options->restart = value;
     else if (which == 3)
         return read_isa(options, value);
-    else
+    else if (which == 4)
         return read_wall(options, value);
+    else
+        return read_variant(options, value);
     return true;
 }
 

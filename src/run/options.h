@@ -24,6 +24,7 @@ struct options {
     const char *job;     /* run, check */
     const char *run;     /* status, stop */
     const char *out;     /* NULL: runs/NAME */
+    int variant;         /* of the job's sweep, from 1; 0: all, or there is none */
     const char *restart; /* NULL: the newest good checkpoint */
     double wall;         /* this process's wall time [s]; 0: not limited here */
     bool fresh, take_over, json;

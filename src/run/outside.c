@@ -1,7 +1,4 @@
-/*
- * See outside.h.  A run that says it is running may have been killed: its lock tells, on its
- * own host at once, from another one by how long ago it was heard of.
- */
+/* See outside.h. */
 #include "run/outside.h"
 
 #include <inttypes.h>
@@ -17,13 +14,11 @@
 #include "store/file.h"
 #include "store/run_folder.h"
 #include "store/run_record.h"
-
-/* A run on another host that said nothing for so long is taken to be dead [s]. */
-static const int64_t SILENCE = 60;
+#include "store/study_file.h"
 
 struct account {
     const char *run;
-    const char *state; /* "starting" and "killed" as well */
+    const char *state; /* see run_record_state */
     bool has_owner;
     struct run_lock_owner owner;
     struct run_record_status status;
@@ -33,30 +28,6 @@ struct account {
 };
 
 /* ------------------------------------------------------------------------------- looking */
-
-static bool owner_lives(const struct account *account)
-{
-    if (!account->has_owner)
-        return false;
-    const enum run_lock_life life = run_lock_look_for(&account->owner);
-    if (life != RUN_LOCK_ELSEWHERE)
-        return life == RUN_LOCK_LIVES;
-    char *path = array_format("%s/lock", account->run);
-    struct stat state;
-    const bool there = stat(path, &state) == 0;
-    free(path);
-    return there && (int64_t)time(NULL) - (int64_t)state.st_mtime < SILENCE;
-}
-
-static const char *judge(const struct account *account)
-{
-    const struct run_record_status *status = &account->status;
-    if (!owner_lives(account)) {
-        const bool died = strcmp(status->state, "running") == 0 || account->has_owner;
-        return died ? "killed" : status->state[0] != '\0' ? status->state : "not started";
-    }
-    return strcmp(status->owner, account->owner.token) == 0 ? status->state : "starting";
-}
 
 static void look_for_checkpoint(struct account *account)
 {
@@ -87,7 +58,8 @@ static bool look(struct account *account, const char *run)
         return false;
     (void)run_record_read_status(run, &account->status);
     account->n_events = run_record_history(run, &account->events);
-    account->state = judge(account);
+    account->state =
+        run_record_state(run, &account->status, account->has_owner ? &account->owner : NULL);
     look_for_checkpoint(account);
     return true;
 }
@@ -228,35 +200,126 @@ static void print_json(const struct account *account)
         puts(k > 0 ? "," : "");
         put_event(&account->events[k]);
     }
-    puts("]\n}");
+    printf("]\n}");
 }
 
-int outside_status(const char *run, bool json)
+static int run_status(const char *run, bool json)
 {
     struct account account;
     if (!look(&account, run)) {
-        report_error("there is no run in %s; name the folder of a run", run);
+        report_error("there is no run in %s; name the folder of a run or a study", run);
         return REPORT_BAD_INPUT;
     }
     if (json)
         print_json(&account);
     else
         print_for_people(&account);
+    if (json)
+        putchar('\n');
     free(account.events);
     return REPORT_FINISHED;
 }
 
+/* ------------------------------------------------------------------------------- studies */
+
+/* A variant's run in short; one that has not begun is `not started`. */
+static void print_variant(const struct account *account, const struct sweep *sweep, int variant)
+{
+    const struct run_record_status *status = &account->status;
+    char *values = sweep_describe(sweep, variant);
+    char span[32];
+    printf("variant %d: %s", variant, account->state);
+    if (status->n_steps > 0)
+        printf(", step %" PRId64 " of %" PRId64, status->step, status->n_steps);
+    if (strcmp(account->state, "running") == 0 && status->left >= 0.0)
+        printf(", %s left", format_span(span, status->left));
+    printf("; %s, in %s\n", values, sweep->folders[variant - 1]);
+    free(values);
+}
+
+static void print_variant_json(const struct account *account, const struct sweep *sweep,
+                               int variant)
+{
+    printf("%s\n{\"variant\": %d, \"values\": {", variant > 1 ? "," : "", variant);
+    for (int k = 0; k < sweep->n_keys; k++) {
+        printf("%s", k > 0 ? ", " : "");
+        put_string(sweep->names[k], sweep_value(sweep, variant, k));
+    }
+    printf("}, \"status\": ");
+    print_json(account);
+    putchar('}');
+}
+
+/* How many variants are in each state. */
+static void print_states(int n, char *const *states)
+{
+    bool first = true;
+    for (int i = 0; i < n; i++) {
+        int count = 0, before = 0;
+        for (int k = 0; k < n; k++) {
+            count += strcmp(states[k], states[i]) == 0;
+            before += k < i && strcmp(states[k], states[i]) == 0;
+        }
+        if (before > 0)
+            continue;
+        printf("%s%d %s", first ? "" : ", ", count, states[i]);
+        first = false;
+    }
+    printf(" of %d variants\n", n);
+}
+
+static int study_status(const char *study, bool json)
+{
+    struct sweep sweep;
+    const int status = study_file_read(study, &sweep);
+    if (status != REPORT_FINISHED)
+        return status;
+    char **states = array_allocate((size_t)sweep.n_variants, sizeof *states);
+    if (json) {
+        printf("{");
+        put_string("study", study);
+        printf(", \"variants\": [");
+    }
+    for (int v = 1; v <= sweep.n_variants; v++) {
+        char *run = array_format("%s/%s", study, sweep.folders[v - 1]);
+        struct account account;
+        if (!look(&account, run))
+            account = (struct account){.run = run, .state = "not started", .checkpoint = -1};
+        if (json)
+            print_variant_json(&account, &sweep, v);
+        else
+            print_variant(&account, &sweep, v);
+        states[v - 1] = array_string(account.state);
+        free(account.events);
+        free(run);
+    }
+    if (json)
+        puts("]}");
+    else
+        print_states(sweep.n_variants, states);
+    for (int v = 0; v < sweep.n_variants; v++)
+        free(states[v]);
+    free(states);
+    sweep_clear(&sweep);
+    return REPORT_FINISHED;
+}
+
+int outside_status(const char *run, bool json)
+{
+    return study_file_is_there(run) ? study_status(run, json) : run_status(run, json);
+}
+
 /* ------------------------------------------------------------------------------- stopping */
 
-int outside_stop(const char *run)
+static int stop_run(const char *run)
 {
     struct account account;
     if (!look(&account, run)) {
-        report_error("there is no run in %s; name the folder of a run", run);
+        report_error("there is no run in %s; name the folder of a run or a study", run);
         return REPORT_BAD_INPUT;
     }
     int status = REPORT_FINISHED;
-    if (!owner_lives(&account)) {
+    if (!account.has_owner || !run_record_lives(run, &account.owner)) {
         report_say("nothing runs in %s: there is nothing to stop", run);
     } else {
         char *stop = array_format("%s/stop", run);
@@ -267,4 +330,29 @@ int outside_stop(const char *run)
     }
     free(account.events);
     return status;
+}
+
+/* Asks what runs of a study to stop. */
+static int stop_study(const char *study)
+{
+    struct sweep sweep;
+    int status = study_file_read(study, &sweep), n = 0;
+    for (int v = 0; v < sweep.n_variants && status == REPORT_FINISHED; v++) {
+        char *run = array_format("%s/%s", study, sweep.folders[v]);
+        struct run_lock_owner owner;
+        if (run_lock_read(run, &owner) && run_record_lives(run, &owner)) {
+            status = stop_run(run);
+            n++;
+        }
+        free(run);
+    }
+    if (status == REPORT_FINISHED && n == 0)
+        report_say("nothing runs in %s: there is nothing to stop", study);
+    sweep_clear(&sweep);
+    return status;
+}
+
+int outside_stop(const char *run)
+{
+    return study_file_is_there(run) ? stop_study(run) : stop_run(run);
 }

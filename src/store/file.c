@@ -164,8 +164,13 @@ static int write_all(int descriptor, const char *bytes, size_t n)
 
 char *file_write(const char *path, const void *bytes, size_t n)
 {
+    return file_write_beside(path, "", bytes, n);
+}
+
+char *file_write_beside(const char *path, const char *tag, const void *bytes, size_t n)
+{
     file_survive_size_limit();
-    char *temporary = file_temporary(path, "");
+    char *temporary = file_temporary(path, tag);
     char *why = NULL;
     const int descriptor = open(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
     if (descriptor < 0) {

@@ -34,6 +34,8 @@ char *file_publish(const char *temporary, const char *path);
 
 /* Replaces `path` by these bytes: temporary name, sync, rename. */
 char *file_write(const char *path, const void *bytes, size_t n);
+/* The same where others may do so at the same time: the tag keeps them apart. */
+char *file_write_beside(const char *path, const char *tag, const void *bytes, size_t n);
 /* All of a file of at most `limit` bytes as a string, *text; the caller frees it. */
 char *file_read(const char *path, size_t limit, char **text);
 

@@ -8,6 +8,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/stat.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -15,6 +16,10 @@
 #include "base/process.h"
 #include "store/file.h"
 #include "store/run_folder.h"
+#include "store/run_lock.h"
+
+/* A run on another host that said nothing for so long is taken to be dead [s]. */
+static const int64_t SILENCE = 60;
 
 enum { STATUS_MAX = 1 << 16, HISTORY_MAX = 1 << 26 };
 
@@ -75,6 +80,30 @@ bool run_record_read_status(const char *folder, struct run_record_status *status
                sscanf(line, "updated: %" SCNd64, &status->since) == 1);
     free(text);
     return status->state[0] != '\0';
+}
+
+/* ------------------------------------------------------------------------------- state */
+
+bool run_record_lives(const char *folder, const struct run_lock_owner *owner)
+{
+    const enum run_lock_life life = run_lock_look_for(owner);
+    if (life != RUN_LOCK_ELSEWHERE)
+        return life == RUN_LOCK_LIVES;
+    char *path = array_format("%s/lock", folder);
+    struct stat state;
+    const bool there = stat(path, &state) == 0;
+    free(path);
+    return there && (int64_t)time(NULL) - (int64_t)state.st_mtime < SILENCE;
+}
+
+const char *run_record_state(const char *folder, const struct run_record_status *status,
+                             const struct run_lock_owner *owner)
+{
+    if (owner == NULL || !run_record_lives(folder, owner)) {
+        const bool died = strcmp(status->state, "running") == 0 || owner != NULL;
+        return died ? "killed" : status->state[0] != '\0' ? status->state : "not started";
+    }
+    return strcmp(status->owner, owner->token) == 0 ? status->state : "starting";
 }
 
 /* ------------------------------------------------------------------------------- history */

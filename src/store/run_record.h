@@ -10,6 +10,7 @@
 #include <stdint.h>
 
 struct run_folder;
+struct run_lock_owner;
 
 struct run_record_status {
     char state[16]; /* running, stopped, finished or failed */
@@ -41,6 +42,14 @@ void run_record_write_status(const struct run_folder *folder,
                              const struct run_record_status *status);
 /* False when there is none. */
 bool run_record_read_status(const char *folder, struct run_record_status *status);
+
+/* Does the process live that owns a folder?  On its own host that shows at once, from another
+ * one by how long ago it was heard of. */
+bool run_record_lives(const char *folder, const struct run_lock_owner *owner);
+/* What a run does: the status' state, or starting, killed or not started, by its status, empty
+ * where there is none, and who owns it, NULL: nobody.  Lives as long as the status. */
+const char *run_record_state(const char *folder, const struct run_record_status *status,
+                             const struct run_lock_owner *owner);
 
 /* Adds to the history; `at` and, of a start, `process`, `host` and `job` are filled in. */
 void run_record_add_event(const struct run_folder *folder,

@@ -75,7 +75,7 @@ duller=$(find duller/checkpoints -name '*.h5' | sort | tail -n 1)
 
 # ------------------------------------------------------------------------- command lines
 
-for tool in discharge runstats compare info render chart; do
+for tool in discharge runstats compare info render chart study; do
     try 0 "$bin/tremie-$tool" --help
     says "usage: tremie-$tool" "Exit status"
     try 2 "$bin/tremie-$tool"

@@ -30,6 +30,10 @@ export OMPI_MCA_rmaps_base_oversubscribe=1 OMPI_MCA_hwloc_base_binding_policy=no
 sed 's/^time: .*/time: {end: 12.8, step: 2.0e-4}/; s/steps: 150}, keep: 100/steps: 2000}, keep: 2/' \
     "$scenes/heap.yaml" > heap.yaml
 last=checkpoints/step_000000064000.h5
+{
+    cat heap.yaml
+    echo 'sweep: [{key: contact.pairs.0.friction, values: [0.3, 0.4, 0.5]}]'
+} > study.yaml
 export JOB=heap.yaml RUN
 for friction in 0.3 0.5; do # 0.5 is the job's own
     tremie 1 run heap.yaml --out "friction_$friction" --set "contact.pairs.0.friction=$friction" ||
@@ -125,14 +129,19 @@ equal {$reference,$RUN}/$last
 equal $reference $RUN
 result "a chain by singleton"
 
-# ------------------------------------------------------------------ an array
-export RUNS=.
+# ------------------------------------------------------------------ a study
+export STUDY=study
 mkdir reference && mv friction_* reference
-submit --array=0,2 --ntasks=1 jobs/batch/slurm_array.sh
+JOB=study.yaml
+submit --array=1,3 --ntasks=1 jobs/batch/slurm_array.sh
 for value in 0.3 0.5; do
-    RUN=friction_$value
-    until_true [ -e $RUN/series/step_000000064001.h5 ]
-    equal {reference/,}$RUN/$last
+    RUN=study/friction_$value
+    until_true [ -e "$RUN/series/step_000000064001.h5" ]
+    equal {reference/friction_$value,$RUN}/$last
 done
 until_true is "$id" COMPLETED
-result "an array over a parameter"
+"$bin/tremie" status study > said || why+=" status gives $?;"
+says "variant 1: finished, step 64000 of 64000; friction 0.3, in friction_0.3"
+says "variant 2: not started"
+says "2 finished, 1 not started of 3 variants"
+result "an array over the variants of a study"
