@@ -3,7 +3,7 @@
 # shares with the solver only base and the headers that store's headers speak of.
 set -euo pipefail
 
-floors=(base job model physics contact domain store run)
+floors=(base job model physics solid contact domain store run)
 declare -A level
 for i in "${!floors[@]}"; do
     level[${floors[i]}]=$i

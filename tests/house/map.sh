@@ -10,7 +10,7 @@ for header in src/*/*.h; do
         why+=" $floor/$module is not in src/README.md;"
 done
 for module in $(sed -n -E 's/^\| `([a-z0-9_]+)` \|.*/\1/p' src/README.md); do
-    compgen -G "src/*/$module.h" > /dev/null || [[ $module =~ ^(run|store|domain|contact|physics|model|job|base)$ ]] ||
+    compgen -G "src/*/$module.h" > /dev/null || [[ $module =~ ^(run|store|domain|contact|physics|solid|model|job|base)$ ]] ||
         why+=" src/README.md names $module, which is not there;"
 done
 [ -z "$why" ] && echo "ok modules" || echo "FAIL modules:$why"

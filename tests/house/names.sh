@@ -12,6 +12,7 @@ words()
     contact_set) echo contact contacts contact_set ;;
     facet_contact) echo facet_contact facet_contacts facet body_load ;;
     body) echo body bodies ;;
+    solid_energy) echo solid_energy solid_energies ;;
     cell_grid) echo cell_grid cell ;;
     *_blocks_v? | *_blocks_generic | *_blocks | *_rows_v? | *_rows_generic | *_rows) echo "${1%_blocks*}" "${1%_rows*}" ;;
     job_*) echo job ;;

@@ -1,0 +1,427 @@
+/*
+ * See solid.h.  Elements are computed in lists by shape and material, whose results lie by
+ * element; nodes then fetch them in ascending order of elements.
+ */
+#include "solid/solid.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/report.h"
+
+const struct field solid_node_fields[SOLID_NODE_N_FIELDS] = {
+    [SOLID_NODE_POSITION] = {"position", "m", "place at this step", FIELD_DOUBLE, 3,
+                             FIELD_GHOST | FIELD_MOTION | FIELD_SAVED | FIELD_PLOTTED},
+    [SOLID_NODE_VELOCITY] = {"velocity", "m/s", "velocity half a step earlier", FIELD_DOUBLE, 3,
+                             FIELD_GHOST | FIELD_MOTION | FIELD_SAVED | FIELD_PLOTTED},
+    [SOLID_NODE_WORK] =
+        {"work", "J",
+         "done up to the middle of the last step: taken up by elements; done by "
+         "loads, contacts, gravity, supports; taken by mass-proportional "
+         "damping",
+         FIELD_DOUBLE, SOLID_N_WORKS, FIELD_SAVED},
+};
+
+const struct field solid_element_fields[SOLID_ELEMENT_N_FIELDS] = {
+    [SOLID_ELEMENT_STRESS] = {"stress", "Pa", "Cauchy's, xx yy zz xy yz zx, a step earlier",
+                              FIELD_DOUBLE, 6, FIELD_GHOST | FIELD_SAVED | FIELD_PLOTTED},
+    [SOLID_ELEMENT_PLASTIC_STRAIN] = {"plastic_strain", "1", "equivalent plastic strain",
+                                      FIELD_DOUBLE, 1,
+                                      FIELD_GHOST | FIELD_SAVED | FIELD_PLOTTED},
+    [SOLID_ELEMENT_PLASTIC_WORK] = {"plastic_work", "J",
+                                    "turned into heat by plastic flow since the start",
+                                    FIELD_DOUBLE, 1, FIELD_GHOST | FIELD_SAVED},
+    [SOLID_ELEMENT_HOURGLASS] = {"hourglass", "N", "forces of the four hourglass modes",
+                                 FIELD_DOUBLE, 12, FIELD_GHOST | FIELD_SAVED},
+    [SOLID_ELEMENT_HOURGLASS_WORK] = {"hourglass_work", "J",
+                                      "taken up by hourglass stiffness since the start",
+                                      FIELD_DOUBLE, 1,
+                                      FIELD_GHOST | FIELD_SAVED | FIELD_PLOTTED},
+    [SOLID_ELEMENT_HOURGLASS_DAMPED] = {"hourglass_damped", "J",
+                                        "turned into heat by hourglass viscosity since the "
+                                        "start",
+                                        FIELD_DOUBLE, 1, FIELD_GHOST | FIELD_SAVED},
+    [SOLID_ELEMENT_DAMPED] = {"damped", "J",
+                              "turned into heat by stiffness-proportional damping since the "
+                              "start",
+                              FIELD_DOUBLE, 1, FIELD_GHOST | FIELD_SAVED},
+    [SOLID_ELEMENT_ALIVE] = {"alive", "1", "1: it resists; 0: it has failed", FIELD_INT32, 1,
+                             FIELD_GHOST | FIELD_SAVED | FIELD_PLOTTED},
+};
+
+/* Corners of the element that pads: about a cube, of which the first four are a tetrahedron. */
+static const double PADDING[SOLID_ELEMENT_CORNERS][3] = {
+    {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.5},
+    {0.0, 0.0, 1.0}, {1.0, 0.0, 1.0}, {1.0, 1.0, 1.0}, {0.0, 1.0, 1.0}};
+
+/* ------------------------------------------------------------------------------- building */
+
+static struct solid_element_material build_material(const struct solid_material *from)
+{
+    struct solid_element_material material = {.density = from->density,
+                                              .damping = from->damping,
+                                              .hourglass_stiffness = from->hourglass_stiffness,
+                                              .hourglass_viscosity = from->hourglass_viscosity,
+                                              .n_yield = from->n_yield};
+    solid_element_elastic(&material, from->young, from->poisson);
+    if (from->n_yield == 0)
+        return material;
+    CHECK(from->yield[0].strain == 0.0, "a yield curve begins at a plastic strain of %g",
+          from->yield[0].strain);
+    struct solid_element_yield *pieces = array_allocate((size_t)from->n_yield, sizeof *pieces);
+    for (int k = 0; k < from->n_yield; k++) {
+        const struct solid_yield_point *a = &from->yield[k], *b = a + 1;
+        const double slope = k + 1 < from->n_yield
+                                 ? (b->stress - a->stress) / (b->strain - a->strain)
+                                 : from->hardening;
+        pieces[k] = (struct solid_element_yield){a->strain, a->stress, slope,
+                                                 1.0 / (3.0 * material.mu + slope)};
+    }
+    material.yield = pieces;
+    return material;
+}
+
+static void build_nodes(struct solid *solid, const struct solid_mesh *mesh)
+{
+    const size_t n = (size_t)mesh->n_nodes;
+    solid->n_nodes = mesh->n_nodes;
+    solid->reference = array_allocate(n, sizeof *solid->reference);
+    solid->node = array_allocate_rows(n + SOLID_ELEMENT_CORNERS, sizeof *solid->node);
+    solid->mass = array_allocate(n, sizeof *solid->mass);
+    solid->internal = array_allocate(n, sizeof *solid->internal);
+    solid->external = array_allocate(n, sizeof *solid->external);
+    solid->contact = array_allocate(n, sizeof *solid->contact);
+    solid->work = array_allocate(n, sizeof *solid->work);
+    solid->moves = array_allocate(n, sizeof *solid->moves);
+    memcpy(solid->reference, mesh->places, n * sizeof *solid->reference);
+    for (size_t i = 0; i < n; i++)
+        memcpy(solid->node[i].lane, mesh->places[i], sizeof mesh->places[i]);
+    for (size_t c = 0; c < SOLID_ELEMENT_CORNERS; c++)
+        memcpy(solid->node[n + c].lane, PADDING[c], sizeof PADDING[c]);
+}
+
+static void build_elements(struct solid *solid, const struct solid_mesh *mesh)
+{
+    const size_t n = (size_t)mesh->n_elements, padded = n + 1;
+    solid->n_elements = mesh->n_elements;
+    solid->shape = array_allocate(n, sizeof *solid->shape);
+    solid->corners = array_allocate(padded, sizeof *solid->corners);
+    solid->material = array_allocate(n, sizeof *solid->material);
+    solid->alive = array_allocate(n, sizeof *solid->alive);
+    solid->element_mass = array_allocate(padded, sizeof *solid->element_mass);
+    solid->state = array_allocate_rows(padded, sizeof *solid->state);
+    solid->force = array_allocate_rows(padded, sizeof *solid->force);
+    memcpy(solid->shape, mesh->shapes, n * sizeof *solid->shape);
+    memcpy(solid->corners, mesh->corners, n * sizeof *solid->corners);
+    if (mesh->materials != NULL)
+        memcpy(solid->material, mesh->materials, n * sizeof *solid->material);
+    for (int c = 0; c < SOLID_ELEMENT_CORNERS; c++)
+        solid->corners[n][c] = solid->n_nodes + c;
+    solid->element_mass[n] = 1.0;
+}
+
+/* Shares of mass are added in ascending order of elements. */
+static void build_mass(struct solid *solid)
+{
+    for (int e = 0; e < solid->n_elements; e++) {
+        double x[SOLID_ELEMENT_CORNERS][3];
+        const int n = solid_corner_places(solid, e, x);
+        CHECK(solid->material[e] >= 0 && solid->material[e] < solid->n_materials,
+              "element %d is of the material %d", e, solid->material[e]);
+        solid->alive[e] = 1;
+        solid->state[e].volume = solid_element_volume(solid->shape[e], x);
+        solid->element_mass[e] =
+            solid->materials[solid->material[e]].density * solid->state[e].volume;
+        for (int c = 0; c < n; c++)
+            solid->mass[solid->corners[e][c]] += solid->element_mass[e] / n;
+    }
+}
+
+/* Which corners meet at each node, by counting. */
+static void build_meets(struct solid *solid)
+{
+    int *next = array_allocate((size_t)solid->n_nodes + 1, sizeof *next);
+    solid->first = array_allocate((size_t)solid->n_nodes + 1, sizeof *solid->first);
+    for (int e = 0; e < solid->n_elements; e++)
+        for (int c = 0; c < solid_element_corners(solid->shape[e]); c++)
+            solid->first[solid->corners[e][c] + 1]++;
+    for (int i = 0; i < solid->n_nodes; i++)
+        next[i + 1] = solid->first[i + 1] += solid->first[i];
+    solid->meets = array_allocate((size_t)solid->first[solid->n_nodes], sizeof *solid->meets);
+    for (int e = 0; e < solid->n_elements; e++)
+        for (int c = 0; c < solid_element_corners(solid->shape[e]); c++)
+            solid->meets[next[solid->corners[e][c]]++] = e * SOLID_ELEMENT_CORNERS + c;
+    free(next);
+}
+
+void solid_create(struct solid *solid, const struct solid_mesh *mesh, int n_materials,
+                  const struct solid_material *materials, enum isa isa)
+{
+    *solid = (struct solid){.n_materials = n_materials, .kernel = solid_element_choose(isa)};
+    solid->materials = array_allocate((size_t)n_materials, sizeof *solid->materials);
+    for (int m = 0; m < n_materials; m++)
+        solid->materials[m] = build_material(&materials[m]);
+    solid->n_lists = n_materials * SOLID_ELEMENT_N_SHAPES;
+    solid->lists = array_allocate((size_t)solid->n_lists, sizeof *solid->lists);
+    for (int k = 0; k < solid->n_lists; k++) {
+        solid->lists[k].shape = (enum solid_element_shape)(k % SOLID_ELEMENT_N_SHAPES);
+        solid->lists[k].material = k / SOLID_ELEMENT_N_SHAPES;
+    }
+    build_nodes(solid, mesh);
+    build_elements(solid, mesh);
+    build_mass(solid);
+    build_meets(solid);
+    solid_supports_init(&solid->supports, solid->n_nodes);
+    solid_assign(solid, NULL);
+}
+
+void solid_destroy(struct solid *solid)
+{
+    for (int m = 0; m < solid->n_materials; m++)
+        free((void *)(uintptr_t)solid->materials[m].yield);
+    for (int k = 0; k < solid->n_lists; k++)
+        free(solid->lists[k].elements);
+    solid_supports_clear(&solid->supports);
+    solid_loads_clear(&solid->loads);
+    free(solid->reference);
+    free(solid->node);
+    free(solid->mass);
+    free(solid->internal);
+    free(solid->external);
+    free(solid->contact);
+    free(solid->work);
+    free(solid->moves);
+    free(solid->shape);
+    free(solid->corners);
+    free(solid->material);
+    free(solid->alive);
+    free(solid->element_mass);
+    free(solid->state);
+    free(solid->force);
+    free(solid->first);
+    free(solid->meets);
+    free(solid->materials);
+    free(solid->lists);
+    *solid = (struct solid){0};
+}
+
+struct field_view solid_node_view(const struct solid *solid, enum solid_node_field field)
+{
+    switch (field) {
+    case SOLID_NODE_POSITION:
+        return (struct field_view){(unsigned char *)solid->node, sizeof *solid->node};
+    case SOLID_NODE_VELOCITY:
+        return (struct field_view){(unsigned char *)(solid->node->lane + 4),
+                                   sizeof *solid->node};
+    case SOLID_NODE_WORK:
+        return (struct field_view){(unsigned char *)solid->work, sizeof *solid->work};
+    case SOLID_NODE_N_FIELDS:
+    default:
+        CHECK(false, "there is no field %d", (int)field);
+        return (struct field_view){NULL, 0};
+    }
+}
+
+struct field_view solid_element_view(const struct solid *solid, enum solid_element_field field)
+{
+#define VIEW(member)                                                                           \
+    ((struct field_view){(unsigned char *)solid->state +                                       \
+                             offsetof(struct solid_element_state, member),                     \
+                         sizeof *solid->state})
+    switch (field) {
+    case SOLID_ELEMENT_STRESS:
+        return VIEW(stress);
+    case SOLID_ELEMENT_PLASTIC_STRAIN:
+        return VIEW(plastic_strain);
+    case SOLID_ELEMENT_PLASTIC_WORK:
+        return VIEW(plastic_work);
+    case SOLID_ELEMENT_HOURGLASS:
+        return VIEW(hourglass);
+    case SOLID_ELEMENT_HOURGLASS_WORK:
+        return VIEW(hourglass_work);
+    case SOLID_ELEMENT_HOURGLASS_DAMPED:
+        return VIEW(hourglass_damped);
+    case SOLID_ELEMENT_DAMPED:
+        return VIEW(damped);
+    case SOLID_ELEMENT_ALIVE:
+        return (struct field_view){(unsigned char *)solid->alive, sizeof *solid->alive};
+    case SOLID_ELEMENT_N_FIELDS:
+    default:
+        CHECK(false, "there is no field %d", (int)field);
+        return (struct field_view){NULL, 0};
+    }
+#undef VIEW
+}
+
+int solid_corner_places(const struct solid *solid, int element,
+                        double x[SOLID_ELEMENT_CORNERS][3])
+{
+    const int n = solid_element_corners(solid->shape[element]);
+    for (int c = 0; c < n; c++)
+        memcpy(x[c], solid_place(solid, solid->corners[element][c]), sizeof x[c]);
+    return n;
+}
+
+/* ------------------------------------------------------------------------------- who computes */
+
+static bool is_computed(const struct solid *solid, int element)
+{
+    if (!solid->alive[element])
+        return false;
+    for (int c = 0; c < solid_element_corners(solid->shape[element]); c++)
+        if (solid->moves[solid->corners[element][c]])
+            return true;
+    return false;
+}
+
+static void list_add(struct solid_list *list, int element)
+{
+    ARRAY_GROW(list->elements, list->n + 1, list->capacity);
+    list->elements[list->n++] = element;
+}
+
+void solid_assign(struct solid *solid, const bool *moves)
+{
+    for (int i = 0; i < solid->n_nodes; i++)
+        solid->moves[i] = moves == NULL || moves[i];
+    for (int k = 0; k < solid->n_lists; k++)
+        solid->lists[k].n = 0;
+    for (int e = 0; e < solid->n_elements; e++) {
+        const int k = solid->material[e] * SOLID_ELEMENT_N_SHAPES + (int)solid->shape[e];
+        if (is_computed(solid, e))
+            list_add(&solid->lists[k], e);
+        else
+            solid->force[e] = (struct solid_element_force){0};
+    }
+    for (int k = 0; k < solid->n_lists; k++)
+        while (solid->lists[k].n % SOLID_ELEMENT_PAD != 0)
+            list_add(&solid->lists[k], solid->n_elements);
+}
+
+void solid_kill(struct solid *solid, int element)
+{
+    solid->alive[element] = 0;
+    memset(solid->state[element].stress, 0, sizeof solid->state[element].stress);
+    memset(solid->state[element].hourglass, 0, sizeof solid->state[element].hourglass);
+}
+
+bool solid_counts(const struct solid *solid, int element)
+{
+    return solid->moves[solid->corners[element][0]];
+}
+
+/* ------------------------------------------------------------------------------- the step */
+
+/* What elements do to a node, in ascending order of elements. */
+static void assemble(const struct solid *solid, int i, double force[3])
+{
+    double sum[3] = {0.0, 0.0, 0.0};
+    for (int k = solid->first[i]; k < solid->first[i + 1]; k++) {
+        const double *corner = &solid->force->corner[0][0] + 4 * (ptrdiff_t)solid->meets[k];
+        for (int d = 0; d < 3; d++)
+            sum[d] -= corner[d];
+    }
+    memcpy(force, sum, sizeof sum);
+}
+
+bool solid_forces(struct solid *solid, int64_t step, double dt)
+{
+    bool failed = false;
+    for (int k = 0; k < solid->n_lists; k++) {
+        const struct solid_list *list = &solid->lists[k];
+        struct solid_element_work work = {.n = list->n,
+                                          .elements = list->elements,
+                                          .nodes = solid->node,
+                                          .corners = solid->corners,
+                                          .mass = solid->element_mass,
+                                          .state = solid->state,
+                                          .force = solid->force,
+                                          .material = &solid->materials[list->material],
+                                          .dt = dt,
+                                          .since = step > 0 ? dt : 0.0};
+        solid->kernel.apply[list->shape](&work);
+        failed |= work.failed;
+    }
+    for (int i = 0; i < solid->n_nodes; i++)
+        if (solid->moves[i]) {
+            assemble(solid, i, solid->internal[i]);
+            memset(solid->external[i], 0, sizeof solid->external[i]);
+        }
+    solid_loads_apply(solid, (double)step * dt, solid->external);
+    return !failed;
+}
+
+/* Velocities as in (5.3); of what is held, those that lead to where it is.  (12.15) */
+struct solid_advance solid_advance(const struct solid *solid, int i, double dt)
+{
+    const double half = 0.5 * solid->damping * dt, mass = solid->mass[i];
+    const double push = 1.0 / (1.0 + half), keep = (1.0 - half) / (1.0 + half);
+    const double *x = solid_place(solid, i), *v = solid_velocity(solid, i);
+    struct solid_advance advance;
+    for (int k = 0; k < 3; k++) {
+        const double force =
+            (solid->internal[i][k] + solid->external[i][k]) + solid->contact[i][k];
+        advance.velocity[k] = v[k] * keep + push * dt * (force / mass + solid->gravity[k]);
+        advance.place[k] = x[k] + dt * advance.velocity[k];
+        advance.support[k] = 0.0;
+    }
+    solid_supports_place(&solid->supports, i, solid->reference[i], advance.place);
+    for (int k = 0; k < 3; k++) {
+        if (solid->supports.of_node[i][k] < 0)
+            continue;
+        const double force =
+            (solid->internal[i][k] + solid->external[i][k]) + solid->contact[i][k];
+        advance.velocity[k] = (advance.place[k] - x[k]) / dt;
+        advance.support[k] =
+            mass * ((advance.velocity[k] - v[k]) / dt +
+                    solid->damping * (0.5 * (advance.velocity[k] + v[k])) - solid->gravity[k]) -
+            force;
+    }
+    return advance;
+}
+
+void solid_power(const struct solid *solid, int i, const struct solid_advance *advance,
+                 const double v[3], double power[SOLID_N_WORKS])
+{
+    const double *before = solid_velocity(solid, i);
+    for (int w = 0; w < SOLID_N_WORKS; w++)
+        power[w] = 0.0;
+    for (int k = 0; k < 3; k++) {
+        const double now = 0.5 * (before[k] + advance->velocity[k]);
+        power[SOLID_WORK_INTERNAL] -= solid->internal[i][k] * v[k];
+        power[SOLID_WORK_LOADS] += solid->external[i][k] * v[k];
+        power[SOLID_WORK_CONTACT] += solid->contact[i][k] * v[k];
+        power[SOLID_WORK_GRAVITY] += solid->mass[i] * solid->gravity[k] * v[k];
+        power[SOLID_WORK_SUPPORTS] += advance->support[k] * v[k];
+        power[SOLID_WORK_DAMPING] += solid->damping * solid->mass[i] * now * v[k];
+    }
+}
+
+/* Work of a step's forces over the half step before and the one behind it.  (12.14) */
+static void count_work(struct solid *solid, int i, const struct solid_advance *advance,
+                       int64_t step, double dt)
+{
+    const double *before = solid_velocity(solid, i);
+    const double earlier = step > 0 ? 0.5 : 0.0; /* nothing was done before the start */
+    double v[3], power[SOLID_N_WORKS];
+    for (int k = 0; k < 3; k++)
+        v[k] = earlier * before[k] + 0.5 * advance->velocity[k];
+    solid_power(solid, i, advance, v, power);
+    for (int w = 0; w < SOLID_N_WORKS; w++)
+        solid->work[i][w] += power[w] * dt;
+}
+
+void solid_move(struct solid *solid, int64_t step, double dt)
+{
+    solid_supports_set(&solid->supports, step + 1, dt);
+    for (int i = 0; i < solid->n_nodes; i++) {
+        if (!solid->moves[i])
+            continue;
+        const struct solid_advance advance = solid_advance(solid, i, dt);
+        count_work(solid, i, &advance, step, dt);
+        memcpy(solid_place(solid, i), advance.place, sizeof advance.place);
+        memcpy(solid_velocity(solid, i), advance.velocity, sizeof advance.velocity);
+        memset(solid->contact[i], 0, sizeof solid->contact[i]);
+    }
+}

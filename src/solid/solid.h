@@ -1,0 +1,181 @@
+/*
+ * A deformable solid: nodes, elements between them, what holds and loads it; one time step
+ * (THEORY.md, section 12).
+ *
+ * All of the solid is in memory; solid_assign() says which nodes this rank moves.  It then
+ * computes every element that has one of them for a corner, and needs places and velocities of
+ * all their nodes; others' nodes it never changes.  A node adds up its elements' forces in
+ * ascending order of elements, so nothing depends on who moves what.  Elements are numbered
+ * from 0 and keep their numbers when others die.
+ *
+ * A step, with dt the same throughout:
+ *
+ *     solid_forces()     stress at x(n), forces of elements and loads on nodes
+ *     ...                contacts add what they do to nodes to `contact`
+ *     solid_move()       velocities at n + 1/2, places at n + 1; clears `contact`
+ *
+ * What must be saved for the next solid_forces() stands in solid_node_fields[] and
+ * solid_element_fields[].  Nothing here is collective.
+ */
+#ifndef TREMIE_SOLID_SOLID_H
+#define TREMIE_SOLID_SOLID_H
+
+#include <stdbool.h>
+#include <stdint.h>
+
+#include "base/field.h"
+#include "base/vec3.h"
+#include "physics/solid_element.h"
+#include "solid/solid_load.h"
+#include "solid/solid_support.h"
+
+/* What a solid is made of, as people give it. */
+struct solid_material {
+    double density;             /* [kg/m3] */
+    double young, poisson;      /* [Pa], [-] */
+    double damping;             /* stiffness-proportional [s] */
+    double hourglass_stiffness; /* share of the stiffness of a wave across a cube [-] */
+    double hourglass_viscosity; /* share of critical damping [-] */
+    int n_yield; /* points of the yield curve, the first at strain 0; 0: elastic */
+    const struct solid_yield_point *yield;
+    double hardening; /* slope behind the last point [Pa] */
+};
+
+struct solid_yield_point {
+    double strain; /* plastic [-] */
+    double stress; /* [Pa] */
+};
+
+/* What a solid is built from; copied. */
+struct solid_mesh {
+    int n_nodes;
+    double (*places)[3]; /* [m] */
+    int n_elements;
+    const enum solid_element_shape *shapes;
+    int (*corners)[SOLID_ELEMENT_CORNERS]; /* positive volumes: physics/solid_gradient.h */
+    const int *materials;                  /* of each element; NULL: all 0 */
+};
+
+/* What works on nodes, and so on the solid. */
+enum solid_work {
+    SOLID_WORK_INTERNAL, /* taken up by elements */
+    SOLID_WORK_LOADS,
+    SOLID_WORK_CONTACT,
+    SOLID_WORK_GRAVITY,
+    SOLID_WORK_SUPPORTS,
+    SOLID_WORK_DAMPING, /* taken by mass-proportional damping */
+    SOLID_N_WORKS
+};
+
+/* Elements of one shape and material that are computed here. */
+struct solid_list {
+    enum solid_element_shape shape;
+    int material;
+    int n, capacity; /* padded */
+    int *elements;
+};
+
+struct solid {
+    int n_nodes;
+    double (*reference)[3];          /* place at the start [m] */
+    struct solid_element_node *node; /* and corners of the element that pads */
+    double *mass;                    /* [kg] */
+    double (*internal)[3];           /* force of the elements at step n [N] */
+    double (*external)[3];           /* of loads, without gravity [N] */
+    double (*contact)[3];            /* from outside; solid_move() clears it [N] */
+    double (*work)[SOLID_N_WORKS];   /* up to the middle of the last move [J] */
+    bool *moves;                     /* by this rank */
+
+    int n_elements;
+    enum solid_element_shape *shape;
+    int (*corners)[SOLID_ELEMENT_CORNERS]; /* and those of the element that pads */
+    int *material;
+    int32_t *alive;
+    double *element_mass; /* [kg] */
+    struct solid_element_state *state;
+    struct solid_element_force *force;
+    int *first; /* of each node: where its corners begin in `meets`; n_nodes + 1 */
+    int *meets; /* element * SOLID_ELEMENT_CORNERS + corner, ascending */
+
+    int n_materials;
+    struct solid_element_material *materials;
+    struct solid_supports supports;
+    struct solid_loads loads;
+    double gravity[3]; /* now [m/s2] */
+    double damping;    /* mass-proportional [1/s] */
+
+    struct solid_element_kernel kernel;
+    int n_lists;
+    struct solid_list *lists;
+};
+
+enum solid_node_field {
+    SOLID_NODE_POSITION,
+    SOLID_NODE_VELOCITY,
+    SOLID_NODE_WORK,
+    SOLID_NODE_N_FIELDS
+};
+
+enum solid_element_field {
+    SOLID_ELEMENT_STRESS,
+    SOLID_ELEMENT_PLASTIC_STRAIN,
+    SOLID_ELEMENT_PLASTIC_WORK,
+    SOLID_ELEMENT_HOURGLASS,
+    SOLID_ELEMENT_HOURGLASS_WORK,
+    SOLID_ELEMENT_HOURGLASS_DAMPED,
+    SOLID_ELEMENT_DAMPED,
+    SOLID_ELEMENT_ALIVE,
+    SOLID_ELEMENT_N_FIELDS
+};
+
+extern const struct field solid_node_fields[SOLID_NODE_N_FIELDS];
+extern const struct field solid_element_fields[SOLID_ELEMENT_N_FIELDS];
+
+/* At rest and without stress at the mesh's places, all of it moved here. */
+void solid_create(struct solid *solid, const struct solid_mesh *mesh, int n_materials,
+                  const struct solid_material *materials, enum isa isa);
+void solid_destroy(struct solid *solid);
+
+/* Where a field of the tables lies: node or element 0 first. */
+struct field_view solid_node_view(const struct solid *solid, enum solid_node_field field);
+struct field_view solid_element_view(const struct solid *solid, enum solid_element_field field);
+
+/* Chooses the nodes that this rank moves (NULL: all) and lists the living elements that are
+ * computed for them.  Due again after solid_kill() and after `alive` was read from a file. */
+void solid_assign(struct solid *solid, const bool *moves);
+/* The element resists nothing from now on; its mass stays with its nodes. */
+void solid_kill(struct solid *solid, int element);
+/* Is this rank the one that counts the element?  The one that moves its first corner. */
+bool solid_counts(const struct solid *solid, int element);
+
+/* Stress at x(n) from the motion since x(n-1); at step 0 that is none.  Once a step, and not
+ * twice.  False: some element failed, solid_find_fault() knows which. */
+bool solid_forces(struct solid *solid, int64_t step, double dt);
+/* From x(n), v(n-1/2) to x(n+1), v(n+1/2), and the work that was done. */
+void solid_move(struct solid *solid, int64_t step, double dt);
+
+/* Node i as solid_move() is about to move it. */
+struct solid_advance {
+    double velocity[3]; /* at n + 1/2 [m/s] */
+    double place[3];    /* at n + 1 [m] */
+    double support[3];  /* force of what holds it [N] */
+};
+/* `supports` for the step: solid_supports_set(). */
+struct solid_advance solid_advance(const struct solid *solid, int i, double dt);
+/* Power of what works on a node that moves at v, of each enum solid_work [W]. */
+void solid_power(const struct solid *solid, int i, const struct solid_advance *advance,
+                 const double v[3], double power[SOLID_N_WORKS]);
+
+static inline double *solid_place(const struct solid *solid, int i)
+{
+    return solid->node[i].lane;
+}
+static inline double *solid_velocity(const struct solid *solid, int i)
+{
+    return solid->node[i].lane + 4;
+}
+/* Places of an element's corners [m]; returns how many. */
+int solid_corner_places(const struct solid *solid, int element,
+                        double x[SOLID_ELEMENT_CORNERS][3]);
+
+#endif

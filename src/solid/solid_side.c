@@ -1,0 +1,60 @@
+/* See solid_side.h. */
+#include "solid/solid_side.h"
+
+#include "solid/solid.h"
+
+static const int HEXAHEDRON[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                     {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+static const int TETRAHEDRON[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+
+int solid_side_nodes(const struct solid *solid, int element, int side,
+                     int nodes[SOLID_SIDE_NODES])
+{
+    const bool hexahedron = solid->shape[element] == SOLID_ELEMENT_HEXAHEDRON;
+    if (side < 0 || side >= (hexahedron ? 6 : 4))
+        return 0;
+    const int n = hexahedron ? 4 : 3;
+    for (int c = 0; c < n; c++)
+        nodes[c] =
+            solid->corners[element][hexahedron ? HEXAHEDRON[side][c] : TETRAHEDRON[side][c]];
+    return n;
+}
+
+static void triangle_areas(double x[SOLID_SIDE_NODES][3], double area[SOLID_SIDE_NODES][3])
+{
+    double a[3], b[3];
+    for (int i = 0; i < 3; i++) {
+        a[i] = x[1][i] - x[0][i];
+        b[i] = x[2][i] - x[0][i];
+    }
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const double share = (a[j] * b[k] - a[k] * b[j]) / 6.0;
+        for (int c = 0; c < 3; c++)
+            area[c][i] = share;
+    }
+}
+
+void solid_side_areas(int n, double x[SOLID_SIDE_NODES][3], double area[SOLID_SIDE_NODES][3])
+{
+    static const double xi[4] = {-1.0, 1.0, 1.0, -1.0}, eta[4] = {-1.0, -1.0, 1.0, 1.0};
+    if (n == 3) {
+        triangle_areas(x, area);
+        return;
+    }
+    double a[3], b[3], twist[3]; /* x = .. + a xi + b eta + twist xi eta */
+    for (int i = 0; i < 3; i++) {
+        const double p = x[2][i] - x[0][i], q = x[1][i] - x[3][i];
+        a[i] = 0.25 * (p + q);
+        b[i] = 0.25 * (p - q);
+        twist[i] = 0.25 * ((x[0][i] - x[1][i]) + (x[2][i] - x[3][i]));
+    }
+    for (int i = 0; i < 3; i++) {
+        const int j = (i + 1) % 3, k = (i + 2) % 3;
+        const double plain = a[j] * b[k] - a[k] * b[j];
+        const double along_xi = a[j] * twist[k] - a[k] * twist[j];
+        const double along_eta = twist[j] * b[k] - twist[k] * b[j];
+        for (int c = 0; c < 4; c++)
+            area[c][i] = plain + (xi[c] * along_xi + eta[c] * along_eta) / 3.0;
+    }
+}

@@ -1,0 +1,59 @@
+/*
+ * What holds nodes: directions in which they do not move, or move as prescribed.
+ *
+ * A prescribed place is a function of step x dt, never a sum over steps; the velocity at the
+ * half step is the one that leads there.
+ */
+#ifndef TREMIE_SOLID_SOLID_SUPPORT_H
+#define TREMIE_SOLID_SOLID_SUPPORT_H
+
+#include <stdint.h>
+
+#include "solid/solid_table.h"
+
+struct job_motion;
+struct motion_place;
+
+enum solid_support_kind {
+    SOLID_SUPPORT_FIXED,
+    SOLID_SUPPORT_DISPLACEMENT, /* since step 0, from a table [m] */
+    SOLID_SUPPORT_VELOCITY,     /* from a table [m/s] */
+    SOLID_SUPPORT_MOTION,       /* whole nodes follow motions, in the order in which they act */
+};
+
+struct solid_support {
+    enum solid_support_kind kind;
+    struct solid_table table;
+    int n_motions;
+    const struct job_motion *motions; /* of the caller, who keeps them */
+    /* At the step that solid_supports_set() was given: */
+    double shift;                /* [m] */
+    struct motion_place *places; /* of each motion */
+};
+
+struct solid_supports {
+    int n, capacity;
+    struct solid_support *list;
+    int n_nodes;
+    int (*of_node)[3]; /* support of each direction; -1: none */
+};
+
+void solid_supports_init(struct solid_supports *supports, int n_nodes);
+void solid_supports_clear(struct solid_supports *supports);
+
+/* Holds nodes in a direction (0 to 2).  The table is copied; with SOLID_SUPPORT_FIXED none is
+ * needed.  A later support of the same node and direction takes the place of an earlier one. */
+void solid_supports_add(struct solid_supports *supports, enum solid_support_kind kind,
+                        int direction, const struct solid_table *table, int n_nodes,
+                        const int *nodes);
+/* Makes nodes follow prescribed motions. */
+void solid_supports_add_motion(struct solid_supports *supports, int n_motions,
+                               const struct job_motion *motions, int n_nodes, const int *nodes);
+
+/* Brings all supports to a step. */
+void solid_supports_set(struct solid_supports *supports, int64_t step, double dt);
+/* Where that puts a node, in the directions in which it is held; others are left. */
+void solid_supports_place(const struct solid_supports *supports, int node,
+                          const double reference[3], double place[3]);
+
+#endif
