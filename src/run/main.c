@@ -128,6 +128,20 @@ static int read_job(const struct comm *comm, const struct options *options, stru
     return size > 0 ? REPORT_FINISHED : REPORT_BAD_INPUT;
 }
 
+/* Says so where a body is a solid, whose motion a run cannot compute. */
+static bool has_solids(const struct job *job)
+{
+    for (int b = 0; b < job->n_bodies; b++)
+        if (job->bodies[b].model == JOB_MODEL_SOLID) {
+            report_error(
+                "body '%s' is a solid, and runs know rigid bodies alone; `tremie check` "
+                "looks at its mesh, `model: rigid` makes it run",
+                job->bodies[b].name);
+            return true;
+        }
+    return false;
+}
+
 static int run_or_check(const struct comm *comm, const struct options *options)
 {
     struct job job = {0};
@@ -135,6 +149,8 @@ static int run_or_check(const struct comm *comm, const struct options *options)
     int status = read_job(comm, options, &job, &text);
     if (status == REPORT_FINISHED && options->command == OPTIONS_CHECK)
         check_print(&job, comm);
+    else if (status == REPORT_FINISHED && has_solids(&job))
+        status = REPORT_BAD_INPUT;
     else if (status == REPORT_FINISHED)
         status = drive_run(comm, options, &job, text);
     job_clear(&job);
