@@ -12,6 +12,7 @@
 #include "base/report.h"
 #include "job/job.h"
 #include "model/gmsh.h"
+#include "model/solid_condition.h"
 #include "model/solid_mesh.h"
 #include "model/solid_quality.h"
 
@@ -296,6 +297,48 @@ TEST(widths_and_jacobians_of_known_elements)
     EXPECT_NEAR(q.volume, 1.0 / 3.0, 1e-15);
     EXPECT_NEAR(q.jacobian_least, 1.0, 1e-15);
     EXPECT_NEAR(q.width, 2.0 / sqrt(3.0), 1e-15); /* its altitude */
+}
+
+/* ------------------------------------------------------------------------------ conditions */
+
+TEST(conditions_are_functions_of_time)
+{
+    struct job_value rows[3] = {{1.0, 2.0}, {2.0, -4.0}, {4.0, 0.5}};
+    struct job_body body = box_of(1, 1, 1);
+    struct solid_mesh mesh;
+    solid_mesh_build(&mesh, &body);
+    const struct job_boundary asked = {
+        .set = (char[]){"x_max"}, .direction = 1, .n_velocities = 3, .velocities = rows};
+    const struct solid_condition moving = solid_condition_of(&asked, &mesh);
+    EXPECT(moving.kind == SOLID_CONDITION_VELOCITY && moving.directions == JOB_DIRECTION_Y);
+    EXPECT(moving.set == solid_mesh_find(&mesh, "x_max"));
+    EXPECT(solid_condition_at(&moving, 0.0) == 2.0 && solid_condition_at(&moving, 9.0) == 0.5);
+    EXPECT(solid_condition_at(&moving, 1.5) == -1.0 &&
+           solid_condition_at(&moving, 2.0) == -4.0);
+    double sum = 0.0; /* Simpson's rule is exact between the rows */
+    for (int k = 0; k < 64; k++) {
+        const double t = (double)k / 8.0, h = 0.125;
+        EXPECT_NEAR(solid_condition_travel(&moving, t), sum, 1e-13);
+        sum +=
+            h / 6.0 *
+            (solid_condition_at(&moving, t) + 4.0 * solid_condition_at(&moving, t + 0.5 * h) +
+             solid_condition_at(&moving, t + h));
+    }
+    const struct job_boundary others[4] = {
+        {.set = asked.set, .fixed = JOB_DIRECTION_X | JOB_DIRECTION_Z},
+        {.set = asked.set, .direction = 2, .n_displacements = 3, .displacements = rows},
+        {.set = asked.set, .direction = 2, .has_velocity = true, .velocity = -3.0},
+        {.set = asked.set, .has_pressure = true, .pressure = 7.0}};
+    const double travels[3] = {0.0, 2.0, -3.0};
+    for (int k = 0; k < 3; k++) {
+        const struct solid_condition held = solid_condition_of(&others[k], &mesh);
+        EXPECT(held.directions == (k == 0 ? 5 : 4));
+        EXPECT(solid_condition_travel(&held, 1.0) == travels[k]);
+    }
+    const struct solid_condition pressed = solid_condition_of(&others[3], &mesh);
+    EXPECT(pressed.kind == SOLID_CONDITION_PRESSURE &&
+           solid_condition_at(&pressed, 3.0) == 7.0);
+    solid_mesh_clear(&mesh);
 }
 
 /* ---------------------------------------------------------------------------------- faults */
