@@ -237,6 +237,12 @@ static void pairs_sort(struct job *job)
     qsort(job->pairs, (size_t)job->n_pairs, sizeof *job->pairs, compare_pairs);
 }
 
+static void material_clear(struct job_material *material)
+{
+    free(material->name);
+    free(material->hardening_table);
+}
+
 /* Forgets the materials that nothing is made of, and their pairs. */
 static void materials_prune(struct job *job, const bool *used)
 {
@@ -247,7 +253,7 @@ static void materials_prune(struct job *job, const bool *used)
         if (used[m])
             job->materials[n_materials++] = job->materials[m];
         else
-            free(job->materials[m].name);
+            material_clear(&job->materials[m]);
     }
     for (int k = 0; k < job->n_pairs; k++) {
         struct job_pair pair = job->pairs[k];
@@ -410,6 +416,17 @@ static void places_note(struct job *job, const struct yaml_tree_node *root)
         job->spheres[i].place = place_of(job->path, root, "spheres", i);
     for (int i = 0; i < job->n_insertions; i++)
         job->insertions[i].place = place_of(job->path, root, "insert", i);
+    for (int i = 0; i < job->n_bodies; i++) {
+        struct job_body *body = &job->bodies[i];
+        char list[KEY_LENGTH];
+        body->place = place_of(job->path, root, "bodies", i);
+        snprintf(list, sizeof list, "bodies.%d.sets", i);
+        for (int k = 0; k < body->solid.n_sets; k++)
+            body->solid.sets[k].place = place_of(job->path, root, list, k);
+        snprintf(list, sizeof list, "bodies.%d.boundary", i);
+        for (int k = 0; k < body->solid.n_boundary; k++)
+            body->solid.boundary[k].place = place_of(job->path, root, list, k);
+    }
 }
 
 /* Fills the job from a complete tree and frees it again when there are mistakes. */
@@ -527,8 +544,21 @@ bool job_read_text(struct job *job, const char *path, const char *text,
     return fine;
 }
 
+void job_volume_clear(struct job_volume *volume)
+{
+    free(volume->nodes);
+    free(volume->elements);
+    free(volume->node_numbers);
+    free(volume->element_numbers);
+    free(volume->groups);
+    free(volume->items);
+    *volume = (struct job_volume){0};
+}
+
 void job_clear(struct job *job)
 {
+    for (int i = 0; i < job->n_bodies; i++)
+        job_volume_clear(&job->bodies[i].solid.volume);
     schema_clear(job_keys, job);
     free(job->path);
     free(job->name);

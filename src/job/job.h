@@ -20,11 +20,22 @@ struct job_place {
     int line, column;
 };
 
+/* A point of a hardening curve: the stress at which metal yields that has flowed so far. */
+struct job_hardening {
+    double strain; /* plastic, equivalent [-] */
+    double stress; /* [Pa] */
+};
+
 struct job_material {
     char *name;
     double density; /* [kg/m3] */
     double young;   /* [Pa] */
     double poisson; /* [-] */
+    /* Of solids: elastic where neither yield nor a table is given. */
+    double yield;     /* stress [Pa]; 0: none given */
+    double hardening; /* stress over plastic strain, beyond yield [Pa]; 0: perfectly plastic */
+    int n_hardening_table; /* in place of both */
+    struct job_hardening *hardening_table;
 };
 
 enum job_law { JOB_LAW_HERTZ, JOB_LAW_LINEAR, JOB_LAW_DEFAULT /* that of the job */ };
@@ -225,10 +236,96 @@ struct job_free {
 
 enum { JOB_FORCED_MOST = 300 }; /* bodies that forces move, in one job */
 
-/* A rigid body: a surface of quads and triangles, at rest, moved as prescribed or by forces. */
+enum job_mesh_kind {
+    JOB_MESH_BOX,
+    JOB_MESH_PLATE,
+    JOB_MESH_CYLINDER,
+    JOB_MESH_TUBE,
+    JOB_MESH_GMSH
+};
+enum job_elements { JOB_ELEMENTS_HEXAHEDRA, JOB_ELEMENTS_TETRAHEDRA };
+enum job_hourglass { JOB_HOURGLASS_STIFFNESS, JOB_HOURGLASS_VISCOUS };
+
+/* A part of a solid: its nodes in a region. */
+struct job_set {
+    char *name;
+    struct job_region region;
+    struct job_place place;
+};
+
+/* A value at a time, between which it changes linearly. */
+struct job_value {
+    double time; /* [s] */
+    double value;
+};
+
+/* What is prescribed on a set of a solid; one of these (model/solid_condition). */
+struct job_boundary {
+    char *set;
+    int fixed; /* directions in which nodes stay, a set of enum job_direction */
+    bool has_direction, has_velocity, has_force, has_pressure;
+    int direction;                     /* 0 x, 1 y, 2 z: of displacement, velocity, force */
+    double velocity, force, pressure;  /* [m/s], [N] in all, [Pa] against the surface */
+    int n_displacements, n_velocities; /* or such a table */
+    int n_forces, n_pressures;
+    struct job_value *displacements, *velocities, *forces, *pressures;
+    struct job_place place;
+};
+
+enum { JOB_VOLUME_NAME = 128 }; /* bytes of a group's name */
+
+/* A physical group of a file: items first .. first + n - 1. */
+struct job_volume_group {
+    char name[JOB_VOLUME_NAME]; /* its number where it has none */
+    int dimension;              /* of points, curves, surfaces, volumes: 0 to 3 */
+    int first, n;
+};
+
+/* The solid that a file holds (store/surface_file); not a key. */
+struct job_volume {
+    int n_nodes, n_elements, n_groups, n_items;
+    struct vec3 *nodes; /* [unit of the file] */
+    int (*elements)[8]; /* nodes as in model/solid_mesh.h; of a tetrahedron the fifth is -1 */
+    int64_t *node_numbers, *element_numbers; /* in the file */
+    struct job_volume_group *groups;
+    int (
+        *items)[4]; /* nodes of a point, line, triangle or quad, else -1; or an element first */
+};
+
+/* What a deformable body has that a rigid one has not. */
+struct job_solid {
+    enum job_mesh_kind kind;
+    enum job_elements elements;
+    int cells[3];         /* 0: as `size` says */
+    double cell;          /* wanted width of a cell [m]; 0: as `cells` says */
+    struct vec3 corner;   /* plate: least corner */
+    double size[2];       /* plate: along x and y [m] */
+    double thickness;     /* plate: along z [m] */
+    struct vec3 velocity; /* at the start [m/s] */
+    struct {
+        double mass, stiffness; /* Rayleigh's [1/s], [s] */
+    } damping;
+    struct {
+        enum job_hourglass kind;
+        double coefficient; /* [-] */
+    } hourglass;
+    int n_sets, n_boundary;
+    struct job_set *sets;
+    struct job_boundary *boundary;
+    struct job_volume volume; /* Gmsh, once it has been read */
+};
+
+enum job_model { JOB_MODEL_RIGID, JOB_MODEL_SOLID };
+
+/* A rigid body: a surface of quads and triangles, at rest, moved as prescribed or by forces. Or
+ * a solid, whose mesh takes min, max, from, to, radii, file, group, scale, rotation and shift
+ * from here too. */
 struct job_body {
     char *name;
     int material;
+    enum job_model model;
+    struct job_solid solid;
+    struct job_place place;
     enum job_geometry geometry;
     struct vec3 point, normal; /* plane: a square facet through `point`, facing `normal` */
     double extent;             /* plane: edge of the square [m] */
@@ -472,6 +569,7 @@ bool job_read_sweep(struct sweep *sweep, const char *path, int n_overrides,
 bool job_read_text(struct job *job, const char *path, const char *text,
                    struct mistakes *mistakes);
 void job_clear(struct job *job);
+void job_volume_clear(struct job_volume *volume);
 
 /* The name of a job by its path: "hopper" of runs/../hopper.yaml.  The caller frees it. */
 char *job_name(const char *path);

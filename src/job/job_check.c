@@ -412,10 +412,16 @@ static void spheres_check(const struct check *check, bool read_files, bool *fall
         mistake(check, "spheres", "are more than 2e9 in all; fewer are expected");
 }
 
+/* The key under which the shape of a body stands. */
+static const char *block_of(const struct job_body *body)
+{
+    return body->model == JOB_MODEL_SOLID ? "mesh" : "geometry";
+}
+
 static void box_check(const struct check *check, const struct job_body *body, int i)
 {
     char path[64];
-    PATH("bodies.%d.geometry.max", i);
+    PATH("bodies.%d.%s.max", i, block_of(body));
     if (!(body->min.x < body->max.x && body->min.y < body->max.y && body->min.z < body->max.z))
         mistake(check, path, "is not above min in x, y and z; a greater corner is expected");
     PATH("bodies.%d.geometry.open", i);
@@ -435,7 +441,7 @@ static void hopper_check(const struct check *check, const struct job_body *body,
 static void axis_check(const struct check *check, const struct job_body *body, int i)
 {
     char path[64];
-    PATH("bodies.%d.geometry.to", i);
+    PATH("bodies.%d.%s.to", i, block_of(body));
     if (!(vec3_norm(vec3_sub(body->to, body->from)) > 0.0))
         mistake(check, path, "is where from is; another place is expected");
 }
@@ -451,7 +457,7 @@ static void cone_check(const struct check *check, const struct job_body *body, i
 static void tube_check(const struct check *check, const struct job_body *body, int i)
 {
     char path[64];
-    PATH("bodies.%d.geometry.outer", i);
+    PATH("bodies.%d.%s.outer", i, block_of(body));
     if (!(body->inner < body->outer))
         mistake(check, path, "is not above inner; a greater radius is expected");
 }
@@ -668,17 +674,16 @@ static void surface_check(const struct check *check, const struct job_body *body
 {
     char path[64];
     struct stat about;
-    PATH("bodies.%d.geometry.file", i);
+    const char *what = body->model == JOB_MODEL_SOLID ? "mesh" : "surface";
+    PATH("bodies.%d.%s.file", i, block_of(body));
     FILE *in = fopen(body->file, "rb");
     if (in == NULL || fstat(fileno(in), &about) != 0)
         mistake(check, path,
-                "is '%.200s', which cannot be read: %s; a file with a surface is "
-                "expected",
-                body->file, strerror(errno));
+                "is '%.200s', which cannot be read: %s; a file with a %s is expected",
+                body->file, strerror(errno), what);
     else if (S_ISDIR(about.st_mode))
-        mistake(check, path,
-                "is '%.200s', which is a folder; a file with a surface is expected",
-                body->file);
+        mistake(check, path, "is '%.200s', which is a folder; a file with a %s is expected",
+                body->file, what);
     if (in != NULL)
         fclose(in);
 }
@@ -722,6 +727,141 @@ static void shape_check(const struct check *check, const struct job_body *body, 
     }
 }
 
+/* ------------------------------------------------------------------------------- solids */
+
+/* Times of a table that do not ascend. */
+static void table_check(const struct check *check, const char *item, const char *table, int n,
+                        const struct job_value *rows)
+{
+    char path[160];
+    for (int k = 1; k < n; k++) {
+        if (rows[k - 1].time < rows[k].time)
+            continue;
+        PATH("%s.%s.%d.time", item, table, k);
+        mistake(check, path,
+                "does not ascend; a time after that of the row before is expected");
+        return;
+    }
+}
+
+/* One item of a solid's boundary. */
+static void condition_check(const struct check *check, const char *item,
+                            const struct job_boundary *asked)
+{
+    char path[160];
+    const int moved = (asked->n_displacements > 0) + asked->has_velocity +
+                      (asked->n_velocities > 0) + asked->has_force + (asked->n_forces > 0);
+    const int pressed = asked->has_pressure + (asked->n_pressures > 0);
+    if (moved + pressed + (asked->fixed != 0) != 1)
+        mistake(check, item,
+                "prescribes %s; one of fixed, displacement_table, velocity, force, pressure or "
+                "one of their tables is expected, others in items of their own",
+                moved + pressed + asked->fixed == 0 ? "nothing" : "several things");
+    else if ((moved == 1) != asked->has_direction)
+        mistake(check, item,
+                "has %s; x, y or z is expected beside displacement, velocity and "
+                "force alone",
+                moved == 1 ? "no direction" : "a direction that says nothing");
+    table_check(check, item, "displacement_table", asked->n_displacements,
+                asked->displacements);
+    table_check(check, item, "velocity_table", asked->n_velocities, asked->velocities);
+    table_check(check, item, "force_table", asked->n_forces, asked->forces);
+    table_check(check, item, "pressure_table", asked->n_pressures, asked->pressures);
+    PATH("%s.displacement_table.0.displacement", item);
+    if (asked->n_displacements > 0 && asked->displacements[0].value != 0.0)
+        mistake(check, path, "is not 0, so the nodes would jump at the start; 0 is expected");
+}
+
+static void solid_shape_check(const struct check *check, const struct job_body *body, int i,
+                              bool read_files)
+{
+    const bool cells = body->solid.cells[0] > 0, cell = body->solid.cell > 0.0;
+    char path[64];
+    switch (body->solid.kind) {
+    case JOB_MESH_BOX:
+        box_check(check, body, i);
+        break;
+    case JOB_MESH_PLATE:
+        break;
+    case JOB_MESH_CYLINDER:
+        axis_check(check, body, i);
+        break;
+    case JOB_MESH_TUBE:
+        axis_check(check, body, i);
+        tube_check(check, body, i);
+        PATH("bodies.%d.mesh.cells", i);
+        if (cells && body->solid.cells[0] < 3)
+            mistake(check, path, "has fewer than 3 around the axis; at least 3 are expected");
+        break;
+    case JOB_MESH_GMSH:
+        if (read_files)
+            surface_check(check, body, i);
+        return;
+    }
+    PATH("bodies.%d.mesh", i);
+    if (cells == cell)
+        mistake(check, path,
+                "says %s how many cells there are; one of cells and cell is "
+                "expected",
+                cells ? "twice" : "not");
+}
+
+static void solid_check(const struct check *check, const struct job_body *body, int i,
+                        bool read_files)
+{
+    const struct job_solid *solid = &body->solid;
+    char path[64];
+    solid_shape_check(check, body, i, read_files);
+    PATH("bodies.%d.sets", i);
+    names_check(check, path, solid->n_sets, solid->sets, sizeof *solid->sets);
+    for (int k = 0; k < solid->n_sets; k++) {
+        PATH("bodies.%d.sets.%d.region", i, k);
+        if (solid->sets[k].region.kind == JOB_REGION_INSIDE)
+            mistake(check, path,
+                    "is the inside of a body; a box, cylinder or sphere is "
+                    "expected");
+        else
+            region_check(check, path, &solid->sets[k].region);
+    }
+    for (int k = 0; k < solid->n_boundary; k++) {
+        PATH("bodies.%d.boundary.%d", i, k);
+        condition_check(check, path, &solid->boundary[k]);
+    }
+}
+
+/* What the members of a material ask of each other. */
+static void materials_check(const struct check *check)
+{
+    for (int m = 0; m < check->job->n_materials; m++) {
+        const struct job_material *material = &check->job->materials[m];
+        const struct job_hardening *rows = material->hardening_table;
+        char path[96];
+        PATH("materials.%s.", material->name);
+        if (!is_clean(check, path))
+            continue;
+        PATH("materials.%s.hardening", material->name);
+        if (material->hardening > 0.0 && material->yield == 0.0)
+            mistake(check, path, "has no yield beside it; one is expected");
+        PATH("materials.%s.hardening_table", material->name);
+        if (material->n_hardening_table > 0 &&
+            (material->yield > 0.0 || material->hardening > 0.0))
+            mistake(check, path, "stands beside yield or hardening; one of them is expected");
+        if (material->n_hardening_table > 0 && rows[0].strain != 0.0)
+            mistake(check, path,
+                    "does not begin at strain 0; the first row is the stress at "
+                    "which the material begins to flow");
+        for (int k = 1; k < material->n_hardening_table; k++) {
+            PATH("materials.%s.hardening_table.%d", material->name, k);
+            if (rows[k].strain > rows[k - 1].strain && rows[k].stress >= rows[k - 1].stress)
+                continue;
+            mistake(check, path,
+                    "does not ascend; a greater strain than in the row before, and no less "
+                    "stress, are expected");
+            break;
+        }
+    }
+}
+
 static void bodies_check(const struct check *check, bool read_files, bool *standing)
 {
     const struct job *job = check->job;
@@ -733,7 +873,10 @@ static void bodies_check(const struct check *check, bool read_files, bool *stand
         if (!is_clean(check, path) || !is_material(check, job->bodies[i].material))
             continue;
         standing[body->material] = true;
-        shape_check(check, body, i, read_files);
+        if (body->model == JOB_MODEL_SOLID)
+            solid_check(check, body, i, read_files);
+        else
+            shape_check(check, body, i, read_files);
         motions_check(check, body, i);
         forced_check(check, body, i);
         running_check(check, body, i);
@@ -967,6 +1110,7 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     content_names_check(&check);
     names_check(&check, "insert", job->n_insertions, job->insertions, sizeof *job->insertions);
     names_check(&check, "remove", job->n_removals, job->removals, sizeof *job->removals);
+    materials_check(&check);
     spheres_check(&check, read_files, falling);
     bodies_check(&check, read_files, standing);
     if (job->n_spheres == 0 && job->n_insertions == 0 && !job->start.given &&

@@ -41,7 +41,10 @@ static const char *const dimensions[] = {"3", NULL};
 static const char *const laws[] = {"hertz-mindlin", "linear", NULL};
 static const char *const pair_laws[] = {"hertz-mindlin", "linear", "default", NULL};
 static const char *const rollings[] = {"spring", "constant", NULL};
-static const char *const models[] = {"rigid", NULL};
+static const char *const models[] = {"rigid", "solid", NULL};
+static const char *const mesh_kinds[] = {"box", "plate", "cylinder", "tube", "gmsh", NULL};
+static const char *const elements[] = {"hexahedra", "tetrahedra", NULL};
+static const char *const hourglasses[] = {"stiffness", "viscous", NULL};
 static const char *const packings[] = {"lattice", "hexagonal", "random", "csv", "hdf5", NULL};
 static const char *const region_kinds[] = {"box", "cylinder", "sphere", "inside", NULL};
 static const char *const sizes_kinds[] = {"list",      "uniform", "normal",
@@ -116,6 +119,13 @@ static const struct schema_key time_keys[] = {
      .standard = "0.2", ABOVE_TO(0.0, 1.0), AT(struct job, time.safety)},
     END};
 
+static const struct schema_key hardening_table_keys[] = {
+    {"strain", SCHEMA_NUMBER, "plastic strain, from 0 in the first row; ascending", .unit = "1",
+     .required = true, BETWEEN(0.0, 1e3), AT(struct job_hardening, strain)},
+    {"stress", SCHEMA_NUMBER, "stress at which the material yields then", .unit = "Pa",
+     .required = true, ABOVE_TO(0.0, 1e15), AT(struct job_hardening, stress)},
+    END};
+
 static const struct schema_key material_keys[] = {
     {"density", SCHEMA_NUMBER, "mass per volume of the solid", .unit = "kg/m3",
      .required = true, ABOVE_TO(0.0, 1e9), AT(struct job_material, density)},
@@ -123,6 +133,21 @@ static const struct schema_key material_keys[] = {
      ABOVE_TO(0.0, 1e15), AT(struct job_material, young)},
     {"poisson", SCHEMA_NUMBER, "Poisson's ratio", .unit = "1", .required = true,
      INSIDE(-1.0, 0.5), AT(struct job_material, poisson)},
+    {"yield", SCHEMA_NUMBER,
+     "of a body with model solid: stress at which it begins to flow (von Mises); elastic when "
+     "left out",
+     .unit = "Pa", ABOVE_TO(0.0, 1e15), GIVEN(struct job_material, yield),
+     AT(struct job_material, yield)},
+    {"hardening", SCHEMA_NUMBER,
+     "growth of that stress with plastic strain (isotropic); none when left out", .unit = "Pa",
+     ABOVE_TO(0.0, 1e15), GIVEN(struct job_material, hardening),
+     AT(struct job_material, hardening)},
+    {"hardening_table", SCHEMA_LIST,
+     "in place of yield and hardening: true stress over plastic strain, straight between the "
+     "rows, constant behind the last",
+     BETWEEN(1.0, 1000.0), GIVEN(struct job_material, n_hardening_table),
+     .inside = hardening_table_keys,
+     LIST_AT(struct job_material, hardening_table, n_hardening_table)},
     END};
 
 static const struct schema_key pair_keys[] = {
@@ -584,36 +609,213 @@ static const struct schema_key free_keys[] = {
      .standard = "0", BETWEEN(0.0, 1e9), AT(struct job_body, free.start)},
     END};
 
+#define MESH_FILES     KIND(JOB_MESH_GMSH)
+#define MESH_CORNERS   KIND(JOB_MESH_BOX)
+#define MESH_PLATES    KIND(JOB_MESH_PLATE)
+#define MESH_CYLINDERS KIND(JOB_MESH_CYLINDER)
+#define MESH_TUBES     KIND(JOB_MESH_TUBE)
+#define MESH_AXES      (MESH_CYLINDERS | MESH_TUBES)
+#define MESH_SHAPES    (MESH_CORNERS | MESH_PLATES | MESH_AXES)
+
+static const struct schema_key solid_mesh_keys[] = {
+    {"kind", SCHEMA_CHOICE,
+     "the shape. Sets that come with it: `all`, `surface`; `bottom`, `top` (at `from`, `to`); of "
+     "box and plate `x_min`, `x_max`, `y_min`, `y_max`, `z_min`, `z_max` and `side`, the four "
+     "of x and y; of a cylinder `side`; of a tube `inside`, `outside`; of a file its physical "
+     "groups",
+     .required = true, .choices = mesh_kinds, AT(struct job_body, solid.kind)},
+    {"min", SCHEMA_NUMBER, "least corner", .unit = "m", .required = true, BETWEEN(-FAR, FAR),
+     .kinds = MESH_CORNERS, AT(struct job_body, min)},
+    {"max", SCHEMA_NUMBER, "greatest corner", .unit = "m", .required = true, BETWEEN(-FAR, FAR),
+     .kinds = MESH_CORNERS, AT(struct job_body, max)},
+    {"corner", SCHEMA_NUMBER, "least corner", .unit = "m", .required = true, BETWEEN(-FAR, FAR),
+     .kinds = MESH_PLATES, AT(struct job_body, solid.corner)},
+    {"size", SCHEMA_NUMBER, "sides along x and y", .unit = "m", .required = true,
+     ABOVE_TO(0.0, FAR), .kinds = MESH_PLATES, AT(struct job_body, solid.size)},
+    {"thickness", SCHEMA_NUMBER, "thickness, along z", .unit = "m", .required = true,
+     ABOVE_TO(0.0, FAR), .kinds = MESH_PLATES, AT(struct job_body, solid.thickness)},
+    {"from", SCHEMA_NUMBER, "one end of the axis", .unit = "m", .required = true,
+     BETWEEN(-FAR, FAR), .kinds = MESH_AXES, AT(struct job_body, from)},
+    {"to", SCHEMA_NUMBER, "the other end", .unit = "m", .required = true, BETWEEN(-FAR, FAR),
+     .kinds = MESH_AXES, AT(struct job_body, to)},
+    {"radius", SCHEMA_NUMBER, "radius", .unit = "m", .required = true, ABOVE_TO(0.0, FAR),
+     .kinds = MESH_CYLINDERS, AT(struct job_body, radius)},
+    {"inner", SCHEMA_NUMBER, "inner radius", .unit = "m", .required = true, ABOVE_TO(0.0, FAR),
+     .kinds = MESH_TUBES, AT(struct job_body, inner)},
+    {"outer", SCHEMA_NUMBER, "outer radius", .unit = "m", .required = true, ABOVE_TO(0.0, FAR),
+     .kinds = MESH_TUBES, AT(struct job_body, outer)},
+    {"cells", SCHEMA_INT,
+     "numbers of cells: box and plate: along x, y and z; cylinder: across its square core, which "
+     "are a quarter of those around, from there to the rim, along the axis; tube: around, "
+     "through the wall, along the axis",
+     BETWEEN(1.0, 1e6), .kinds = MESH_SHAPES, GIVEN(struct job_body, solid.cells),
+     AT(struct job_body, solid.cells)},
+    {"cell", SCHEMA_NUMBER, "in place of `cells`: the width that a cell should have at most",
+     .unit = "m", ABOVE_TO(0.0, FAR), .kinds = MESH_SHAPES, GIVEN(struct job_body, solid.cell),
+     AT(struct job_body, solid.cell)},
+    {"elements", SCHEMA_CHOICE, "a cell is a hexahedron, or cut into six tetrahedra",
+     .standard = "hexahedra", .choices = elements, .kinds = MESH_SHAPES,
+     AT(struct job_body, solid.elements)},
+    {"file", SCHEMA_FILE,
+     "the file, relative to the job file: Gmsh's .msh of format 2.2 or 4.1, ASCII or binary "
+     "(little-endian), of hexahedra with 8 and tetrahedra with 4 nodes",
+     .required = true, .kinds = MESH_FILES, AT(struct job_body, file)},
+    {"sum", SCHEMA_COUNT,
+     "checksum of the file (CRC-32), filled in by the program: a run is not resumed with "
+     "another file's mesh",
+     .standard = "0", BETWEEN(0.0, 4294967295.0), .kinds = MESH_FILES,
+     AT(struct job_body, sum)},
+    {"group", SCHEMA_TEXT,
+     "the physical volume that is taken, with the nodes that it has; all elements when left out",
+     .kinds = MESH_FILES, GIVEN(struct job_body, group), AT(struct job_body, group)},
+    {"scale", SCHEMA_NUMBER, "factor on all coordinates, applied first: 0.001 for a file in mm",
+     .unit = "1", ABOVE_TO(0.0, 1e9), GIVEN(struct job_body, scale),
+     AT(struct job_body, scale)},
+    {"rotate", SCHEMA_GROUP, "a rotation, applied next", .inside = rotate_keys,
+     GIVEN(struct job_body, turn_axis)},
+    {"move", SCHEMA_NUMBER, "a shift, applied last", .unit = "m", BETWEEN(-FAR, FAR),
+     GIVEN(struct job_body, move), AT(struct job_body, move)},
+    END};
+
+static const struct schema_key set_keys[] = {
+    {"name", SCHEMA_NAME, "name of the set, that no other set of the body has",
+     .required = true, AT(struct job_set, name)},
+    {"region", SCHEMA_GROUP,
+     "nodes that lie in it at time 0, its border included, and the sides of elements on the "
+     "surface all of whose nodes do; a box, cylinder or sphere",
+     .required = true, REGION_AT(struct job_set, region, region.given)},
+    END};
+
+#define VALUE_AT .required = true, AT(struct job_value, value)
+#define TIME_ROW                                                                               \
+    {                                                                                          \
+        "time", SCHEMA_NUMBER,                                                                 \
+            "ascending; before the first and after the last row it is constant",               \
+            .unit = "s", .required = true, BETWEEN(0.0, 1e9), AT(struct job_value, time)       \
+    }
+
+static const struct schema_key displacement_keys[] = {
+    TIME_ROW,
+    {"displacement", SCHEMA_NUMBER, "from the place at the start; 0 at time 0", .unit = "m",
+     BETWEEN(-FAR, FAR), VALUE_AT},
+    END};
+static const struct schema_key velocity_keys[] = {TIME_ROW,
+                                                  {"velocity", SCHEMA_NUMBER,
+                                                   "velocity at that time", .unit = "m/s",
+                                                   BETWEEN(-FAR, FAR), VALUE_AT},
+                                                  END};
+static const struct schema_key force_keys[] = {
+    TIME_ROW,
+    {"force", SCHEMA_NUMBER, "force at that time", .unit = "N", BETWEEN(-1e12, 1e12), VALUE_AT},
+    END};
+static const struct schema_key pressure_keys[] = {TIME_ROW,
+                                                  {"pressure", SCHEMA_NUMBER,
+                                                   "pressure at that time", .unit = "Pa",
+                                                   BETWEEN(-1e15, 1e15), VALUE_AT},
+                                                  END};
+
+static const struct schema_key boundary_keys[] = {
+    {"set", SCHEMA_TEXT, "name of a set of the body: of its mesh, its file, or of `sets`",
+     .required = true, AT(struct job_boundary, set)},
+    {"fixed", SCHEMA_CHOICES,
+     "directions in which its nodes stay where they are; an item of the list has one of fixed, "
+     "displacement_table, velocity, force, pressure or one of their tables",
+     .choices = directions, GIVEN(struct job_boundary, fixed), AT(struct job_boundary, fixed)},
+    {"direction", SCHEMA_CHOICE, "direction of displacement, velocity or force",
+     .choices = directions, GIVEN(struct job_boundary, has_direction),
+     AT(struct job_boundary, direction)},
+    {"displacement_table", SCHEMA_LIST, "displacement of its nodes over time",
+     BETWEEN(1.0, 10000.0), GIVEN(struct job_boundary, n_displacements),
+     .inside = displacement_keys, LIST_AT(struct job_boundary, displacements, n_displacements)},
+    {"velocity", SCHEMA_NUMBER, "velocity of its nodes", .unit = "m/s", BETWEEN(-FAR, FAR),
+     GIVEN(struct job_boundary, has_velocity), AT(struct job_boundary, velocity)},
+    {"velocity_table", SCHEMA_LIST, "velocity of its nodes over time", BETWEEN(1.0, 10000.0),
+     GIVEN(struct job_boundary, n_velocities), .inside = velocity_keys,
+     LIST_AT(struct job_boundary, velocities, n_velocities)},
+    {"force", SCHEMA_NUMBER, "force on all of its nodes together, each bears an equal share",
+     .unit = "N", BETWEEN(-1e12, 1e12), GIVEN(struct job_boundary, has_force),
+     AT(struct job_boundary, force)},
+    {"force_table", SCHEMA_LIST, "such a force over time", BETWEEN(1.0, 10000.0),
+     GIVEN(struct job_boundary, n_forces), .inside = force_keys,
+     LIST_AT(struct job_boundary, forces, n_forces)},
+    {"pressure", SCHEMA_NUMBER,
+     "pressure on the sides of its elements; positive pushes inwards", .unit = "Pa",
+     BETWEEN(-1e15, 1e15), GIVEN(struct job_boundary, has_pressure),
+     AT(struct job_boundary, pressure)},
+    {"pressure_table", SCHEMA_LIST, "pressure over time", BETWEEN(1.0, 10000.0),
+     GIVEN(struct job_boundary, n_pressures), .inside = pressure_keys,
+     LIST_AT(struct job_boundary, pressures, n_pressures)},
+    END};
+
+static const struct schema_key solid_damping_keys[] = {
+    {"mass", SCHEMA_NUMBER, "a force of -mass x nodal mass x velocity on each node",
+     .unit = "1/s", .standard = "0", BETWEEN(0.0, 1e9),
+     AT(struct job_body, solid.damping.mass)},
+    {"stiffness", SCHEMA_NUMBER,
+     "a stress of stiffness x the rate of elastic stress; it lowers the critical step",
+     .unit = "s", .standard = "0", BETWEEN(0.0, 1e3),
+     AT(struct job_body, solid.damping.stiffness)},
+    END};
+
+static const struct schema_key hourglass_keys[] = {
+    {"kind", SCHEMA_CHOICE,
+     "what holds the shapes that the one point of a hexahedron does not feel: springs or "
+     "dashpots",
+     .standard = "stiffness", .choices = hourglasses,
+     AT(struct job_body, solid.hourglass.kind)},
+    {"coefficient", SCHEMA_NUMBER, "its strength", .unit = "1", .standard = "0.05",
+     BETWEEN(0.0, 1.0), AT(struct job_body, solid.hourglass.coefficient)},
+    END};
+
+#define RIGID KIND(JOB_MODEL_RIGID)
+#define SOLID KIND(JOB_MODEL_SOLID)
+
 static const struct schema_key body_keys[] = {
     {"name", SCHEMA_NAME, "name of the body, used once", .required = true,
      AT(struct job_body, name)},
     {"material", SCHEMA_REFERENCE, "material of its surface", .required = true,
      AT(struct job_body, material)},
-    {"model", SCHEMA_CHOICE, "how it deforms: not at all", .standard = "rigid",
-     .choices = models},
-    {"geometry", SCHEMA_GROUP, "its surface", .required = true, .inside = geometry_keys},
+    {"model", SCHEMA_CHOICE, "how it deforms: not at all, or as a solid of finite elements",
+     .standard = "rigid", .choices = models, AT(struct job_body, model)},
+    {"geometry", SCHEMA_GROUP, "its surface", .required = true, .kinds = RIGID,
+     .inside = geometry_keys},
+    {"mesh", SCHEMA_GROUP, "its elements", .required = true, .kinds = SOLID,
+     .inside = solid_mesh_keys},
+    {"sets", SCHEMA_LIST, "parts of it besides those that its mesh has", UP_TO(1000.0),
+     .kinds = SOLID, .inside = set_keys, GIVEN(struct job_body, solid.n_sets),
+     LIST_AT(struct job_body, solid.sets, solid.n_sets)},
+    {"boundary", SCHEMA_LIST, "what is prescribed on its sets; free elsewhere", UP_TO(1000.0),
+     .kinds = SOLID, .inside = boundary_keys, GIVEN(struct job_body, solid.n_boundary),
+     LIST_AT(struct job_body, solid.boundary, solid.n_boundary)},
+    {"velocity", SCHEMA_NUMBER, "velocity of all its nodes at the start", .unit = "m/s",
+     .standard = ZERO, BETWEEN(-FAR, FAR), .kinds = SOLID, AT(struct job_body, solid.velocity)},
+    {"damping", SCHEMA_GROUP, "Rayleigh's damping", .kinds = SOLID,
+     .inside = solid_damping_keys},
+    {"hourglass", SCHEMA_GROUP, "hourglass control of hexahedra", .kinds = SOLID,
+     .inside = hourglass_keys},
     {"motion", SCHEMA_LIST,
      "how it moves as prescribed; one mapping, or several in sequence or together: each moves "
      "what those before it have made of the body, about points and along directions fixed in "
      "space",
-     .single = true, GIVEN(struct job_body, n_motions), BETWEEN(1.0, 100.0),
+     .single = true, GIVEN(struct job_body, n_motions), BETWEEN(1.0, 100.0), .kinds = RIGID,
      .inside = motion_keys, LIST_AT(struct job_body, motions, n_motions)},
     {"driven", SCHEMA_GROUP,
      "moved along or about one axis by forces, those of the spheres and others: a piston under "
      "a load, a drum on its bearings; in place of `motion`",
-     .inside = driven_keys, GIVEN(struct job_body, driven.given)},
+     .kinds = RIGID, .inside = driven_keys, GIVEN(struct job_body, driven.given)},
     {"free", SCHEMA_GROUP,
      "moved in all directions by gravity and the spheres, in place of `motion`; it does not "
      "feel other bodies",
-     .inside = free_keys, GIVEN(struct job_body, free.given)},
+     .kinds = RIGID, .inside = free_keys, GIVEN(struct job_body, free.given)},
     {"surface", SCHEMA_GROUP,
      "its surface runs, like a belt, while the body stays where it is or moves as prescribed: "
      "of the velocity, fixed in space, what lies in the plane of contact acts",
-     .inside = surface_keys, .offset = offsetof(struct job_body, surface.motion),
+     .kinds = RIGID, .inside = surface_keys,
+     .offset = offsetof(struct job_body, surface.motion),
      GIVEN(struct job_body, surface.given)},
     {"active", SCHEMA_NUMBER,
      "times between which it is there, like a plug that is drawn; always when left out",
-     .unit = "s", BETWEEN(0.0, 1e9), GIVEN(struct job_body, comes_and_goes),
+     .unit = "s", BETWEEN(0.0, 1e9), .kinds = RIGID, GIVEN(struct job_body, comes_and_goes),
      AT(struct job_body, active)},
     END};
 
@@ -962,7 +1164,8 @@ const struct schema_key job_keys[] = {
      "regions that take spheres out of the run; where they overlap the first one counts",
      UP_TO(1000.0), .inside = removal_keys, LIST_AT(struct job, removals, n_removals)},
     {"bodies", SCHEMA_LIST,
-     "surfaces of quads and triangles: at rest, moving as prescribed or moved by forces",
+     "surfaces of quads and triangles: at rest, moving as prescribed or moved by forces; or "
+     "deformable solids of finite elements",
      UP_TO(10000.0), .inside = body_keys, LIST_AT(struct job, bodies, n_bodies)},
     {"sections", SCHEMA_LIST,
      "planes, discs and rectangles that count what passes through them", UP_TO(60.0),

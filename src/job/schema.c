@@ -686,16 +686,22 @@ static void default_read(struct item *item)
     yaml_tree_clear(&tree);
 }
 
+bool schema_tells_kind(const struct schema_key *key)
+{
+    return key->type == SCHEMA_CHOICE && key->size > 0 &&
+           (strcmp(key->name, "kind") == 0 || strcmp(key->name, "model") == 0);
+}
+
 /* What the mapping says under `kind`: the index of the choice, 0 where the table knows no
  * kinds, -1 where it says nothing usable. */
 static int kind_find(const struct schema_key *table, const struct yaml_tree_node *node)
 {
     const struct schema_key *key = table;
-    while (key->name != NULL && strcmp(key->name, "kind") != 0)
+    while (key->name != NULL && !schema_tells_kind(key))
         key++;
     if (key->name == NULL)
         return 0;
-    const struct yaml_tree_node *kind = yaml_tree_find(node, "kind");
+    const struct yaml_tree_node *kind = yaml_tree_find(node, key->name);
     if (kind == NULL)
         return key->standard != NULL ? choice_find(key, key->standard) : -1;
     return kind->kind != YAML_TREE_SCALAR ? -1 : choice_find(key, kind->text);
@@ -738,11 +744,11 @@ static void kind_report(const struct schema_reader *reader, const struct schema_
 {
     char where[PATH_LENGTH];
     const struct schema_key *key = table;
-    while (strcmp(key->name, "kind") != 0)
+    while (!schema_tells_kind(key))
         key++;
     mistake(reader, child->file, child->key_line, child->key_column,
-            "%s does not go with kind %s; a key of that kind is expected",
-            path_join(where, path, child->key), key->choices[kind]);
+            "%s does not go with %s %s; a key of that %s is expected",
+            path_join(where, path, child->key), key->name, key->choices[kind], key->name);
 }
 
 static void keys_check(const struct schema_reader *reader, const struct schema_key *table,

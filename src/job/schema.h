@@ -57,7 +57,8 @@ struct schema_key {
     const char *word; /* may stand for a number, and then gives word_value */
     double word_value;
     const char *const *choices; /* NULL ends it */
-    unsigned kinds; /* applies only where the table's `kind` is one of these bits; 0: always */
+    unsigned kinds; /* applies only where the table's `kind` (or `model`) is one of these bits;
+                     0: always */
     size_t offset, size;
     /* An optional key without a default is present when these bytes are not all zero; a bool
      * among them is set when it is read. */
@@ -88,6 +89,9 @@ void schema_write(FILE *out, const struct schema_key *table, const void *from,
 
 /* Frees what reading allocated inside the struct. */
 void schema_clear(const struct schema_key *table, void *from);
+
+/* Does what this key says decide which of the table's keys apply? */
+bool schema_tells_kind(const struct schema_key *key);
 
 /* What a value of this key should be, in words: "a length above 0 m". */
 enum { SCHEMA_EXPECTED = 240 };

@@ -9,7 +9,7 @@ enum { PATH_LENGTH = 200 };
 static void kinds_write(FILE *out, const struct schema_key *table, const struct schema_key *key)
 {
     const struct schema_key *kind = table;
-    while (kind->name != NULL && strcmp(kind->name, "kind") != 0)
+    while (kind->name != NULL && !schema_tells_kind(kind))
         kind++;
     if (key->kinds == 0 || kind->name == NULL)
         return;

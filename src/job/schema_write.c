@@ -217,7 +217,7 @@ static void table_write(struct page *page, const struct schema_key *table, const
 {
     int kind = 0;
     for (const struct schema_key *key = table; key->name != NULL; key++) {
-        if (key->type == SCHEMA_CHOICE && strcmp(key->name, "kind") == 0)
+        if (schema_tells_kind(key))
             kind = *(const int *)(const void *)(from + key->offset);
         if (!is_present(key, kind, from))
             continue;

@@ -18,6 +18,7 @@
 #include "base/report.h"
 #include "job/job.h"
 #include "model/mesh.h"
+#include "model/solid_mesh.h"
 
 static const double PI = 3.14159265358979323846;
 /* Around the skin of a curved surface: 0.1 % of the radius. */
@@ -312,29 +313,36 @@ static struct vec3 turned(struct vec3 r, struct vec3 axis, double sine, double c
     return vec3_add(vec3_add(vec3_scale(cosine, r), across), along);
 }
 
-static void scale_shape(struct geometry *geometry, double scale)
-{
-    for (int v = 0; v < geometry->n_vertices; v++)
-        geometry->vertices[v] = vec3_scale(scale, geometry->vertices[v]);
-    geometry->origin = vec3_scale(scale, geometry->origin);
-    for (int p = 0; p < geometry->n_points; p++) {
-        geometry->points[p][0] = scale * geometry->points[p][0];
-        geometry->points[p][1] = scale * geometry->points[p][1];
-    }
-}
-
-static void turn_shape(struct geometry *geometry, const struct job_body *body)
+void geometry_place(const struct job_body *body, int n, struct vec3 *points)
 {
     const double sine = elementary_sin(body->turn_angle);
     const double cosine = elementary_cos(body->turn_angle);
-    for (int v = 0; v < geometry->n_vertices; v++) {
-        const struct vec3 arm = vec3_sub(geometry->vertices[v], body->turn_point);
-        geometry->vertices[v] =
-            vec3_add(body->turn_point, turned(arm, body->turn_axis, sine, cosine));
+    const bool turns = vec3_norm(body->turn_axis) > 0.0, moves = vec3_norm(body->move) > 0.0;
+    for (int k = 0; k < n; k++) {
+        struct vec3 x = points[k];
+        if (body->scale > 0.0)
+            x = vec3_scale(body->scale, x);
+        if (turns)
+            x = vec3_add(body->turn_point,
+                         turned(vec3_sub(x, body->turn_point), body->turn_axis, sine, cosine));
+        if (moves)
+            x = vec3_add(x, body->move);
+        points[k] = x;
     }
-    const struct vec3 arm = vec3_sub(geometry->origin, body->turn_point);
-    geometry->origin = vec3_add(body->turn_point, turned(arm, body->turn_axis, sine, cosine));
-    geometry->direction = turned(geometry->direction, body->turn_axis, sine, cosine);
+}
+
+/* The axis of a round shape, and its profile. */
+static void place_profile(struct geometry *geometry, const struct job_body *body)
+{
+    geometry_place(body, 1, &geometry->origin);
+    if (vec3_norm(body->turn_axis) > 0.0)
+        geometry->direction =
+            turned(geometry->direction, body->turn_axis, elementary_sin(body->turn_angle),
+                   elementary_cos(body->turn_angle));
+    for (int p = 0; p < geometry->n_points && body->scale > 0.0; p++) {
+        geometry->points[p][0] = body->scale * geometry->points[p][0];
+        geometry->points[p][1] = body->scale * geometry->points[p][1];
+    }
 }
 
 static void build_shape(struct geometry *geometry, const struct job_body *body)
@@ -364,19 +372,43 @@ static void build_shape(struct geometry *geometry, const struct job_body *body)
     CHECK(false, "unknown geometry %d", (int)body->geometry);
 }
 
+/* The surface of a solid, at its nodes. */
+static void build_solid(struct geometry *geometry, const struct job_body *body)
+{
+    struct solid_mesh mesh;
+    struct solid_mesh_side *sides;
+    solid_mesh_build(&mesh, body);
+    const int n_sides = solid_mesh_surface(&mesh, &sides);
+    int *vertex = array_allocate((size_t)mesh.n_nodes, sizeof *vertex); /* 0: none, else + 1 */
+    reserve(geometry, mesh.n_nodes, n_sides);
+    for (int k = 0; k < n_sides; k++) {
+        int *facet = geometry->facets[geometry->n_facets++];
+        const int n =
+            solid_mesh_side_nodes(mesh.elements[sides[k].element], sides[k].side, facet);
+        for (int c = 0; c < n; c++) {
+            const int node = facet[c];
+            if (vertex[node] == 0) {
+                geometry->vertices[geometry->n_vertices++] = mesh.nodes[node];
+                vertex[node] = geometry->n_vertices;
+            }
+            facet[c] = vertex[node] - 1;
+        }
+    }
+    free(vertex);
+    free(sides);
+    solid_mesh_clear(&mesh);
+}
+
 void geometry_build(struct geometry *geometry, const struct job_body *body)
 {
     *geometry = (struct geometry){0};
-    build_shape(geometry, body);
-    if (body->scale > 0.0)
-        scale_shape(geometry, body->scale);
-    if (vec3_norm(body->turn_axis) > 0.0)
-        turn_shape(geometry, body);
-    if (vec3_norm(body->move) > 0.0) {
-        for (int v = 0; v < geometry->n_vertices; v++)
-            geometry->vertices[v] = vec3_add(geometry->vertices[v], body->move);
-        geometry->origin = vec3_add(geometry->origin, body->move);
+    if (body->model == JOB_MODEL_SOLID) {
+        build_solid(geometry, body);
+        return;
     }
+    build_shape(geometry, body);
+    geometry_place(body, geometry->n_vertices, geometry->vertices);
+    place_profile(geometry, body);
 }
 
 void geometry_clear(struct geometry *geometry)

@@ -26,6 +26,9 @@ struct geometry {
 };
 
 /* Local. */
+/* Scales, rotates and moves points as the body asks. */
+void geometry_place(const struct job_body *body, int n, struct vec3 *points);
+/* Of a solid: its outer surface. */
 void geometry_build(struct geometry *geometry, const struct job_body *body);
 void geometry_clear(struct geometry *geometry);
 /* The body's surface, with its features. Local. */

@@ -1,4 +1,7 @@
 /*
+ * A file is read for its surfaces or for its solids: what of it is kept is decided where an
+ * element is met, all else is the same.
+ *
  * A file is a sequence of sections, $Name to $EndName, of which four matter: the format, the
  * names of physical groups, the nodes, the elements; and in 4.1 the entities, which say what
  * groups a surface belongs to (in 2.2 each element does).  Nodes have numbers of any size; they
@@ -21,18 +24,54 @@
 
 #include "base/array.h"
 #include "base/scan.h"
+#include "job/job.h"
 
-enum { TRIANGLE = 2, QUAD = 3, SURFACE = 2, NAME_SHOWN = 300 };
+enum { LINE = 1, TRIANGLE = 2, QUAD = 3, TETRAHEDRON = 4, HEXAHEDRON = 5, POINT = 15 };
+enum { SURFACE = 2, NAME_SHOWN = 300 };
 
 struct node {
     int64_t tag;
     struct vec3 place;
 };
 
+/* A physical group by its dimension and number, and its name where it has one. */
+struct name {
+    int dimension;
+    int64_t tag;
+    const char *text; /* in the file */
+    size_t length;
+};
+
+/* 4.1: what is meshed, and the physical groups that it belongs to. */
+struct entity {
+    int dimension;
+    int64_t tag;
+    int first, n; /* in the list of their numbers */
+};
+
+/* An item of a group while groups are mixed. */
+struct member {
+    int group, item[4];
+};
+
+/* Solids, while they are read. */
+struct solids {
+    struct job_volume *into;
+    int n_names, name_capacity, n_entities, entity_capacity, n_physicals, physical_capacity;
+    int n_members, member_capacity, element_capacity, number_capacity, group_capacity;
+    struct name *names;
+    struct entity *entities;
+    int64_t *physicals;
+    struct member *members;
+    struct name last; /* whose group was asked for last, and that group */
+    int last_group;
+};
+
 struct reader {
     struct scan scan;
     int64_t n_bytes; /* of the file */
     struct surface *surface;
+    struct solids *solids;   /* NULL where surfaces are read */
     const char *group;       /* NULL: all */
     int version;             /* 22 or 41; 0: not said yet */
     bool binary, bytes;      /* the file; what is read now */
@@ -204,6 +243,12 @@ static void list_group(struct reader *reader, const char *name, size_t length)
     }
 }
 
+static void note_name(struct solids *solids, struct name name)
+{
+    ARRAY_GROW(solids->names, solids->n_names + 1, solids->name_capacity);
+    solids->names[solids->n_names++] = name;
+}
+
 static bool read_names(struct reader *reader)
 {
     struct scan *scan = &reader->scan;
@@ -221,7 +266,9 @@ static bool read_names(struct reader *reader)
         while (quote < scan->at && *quote != '"')
             quote++;
         const size_t length = (size_t)(quote - name);
-        if (dimension != SURFACE)
+        if (reader->solids != NULL)
+            note_name(reader->solids, (struct name){(int)dimension, tag, name, length});
+        if (dimension != SURFACE || reader->solids != NULL)
             continue;
         list_group(reader, name, length);
         if (reader->group != NULL && strlen(reader->group) == length &&
@@ -255,21 +302,37 @@ static bool skip_entity(struct reader *reader, int dimension)
     return skip_list(reader);
 }
 
-/* A surface's tag, box, physical groups and borders; it is chosen where it is in the group. */
-static bool read_surface_entity(struct reader *reader)
+static void note_entity(struct solids *solids, int dimension, int64_t tag, int first)
 {
+    ARRAY_GROW(solids->entities, solids->n_entities + 1, solids->entity_capacity);
+    solids->entities[solids->n_entities++] =
+        (struct entity){dimension, tag, first, solids->n_physicals - first};
+}
+
+/* An entity's tag, place or box, physical groups and borders; one of a surface is chosen where
+ * it is in the group. */
+static bool read_entity(struct reader *reader, int dimension)
+{
+    struct solids *solids = reader->solids;
+    const int first = solids != NULL ? solids->n_physicals : 0;
     int64_t tag, n, value;
     bool chosen = false;
-    if (!read_any(reader, SHORT, &tag) || !read_numbers(reader, 6, NULL, 0) ||
-        !read_count(reader, &n))
+    if (!read_any(reader, SHORT, &tag) ||
+        !read_numbers(reader, dimension == 0 ? 3 : 6, NULL, 0) || !read_count(reader, &n))
         return false;
     for (int64_t k = 0; k < n; k++) {
         if (!read_any(reader, SHORT, &value))
             return false;
         chosen = chosen || value == reader->physical || -value == reader->physical;
+        if (solids == NULL)
+            continue;
+        ARRAY_GROW(solids->physicals, solids->n_physicals + 1, solids->physical_capacity);
+        solids->physicals[solids->n_physicals++] = value < 0 ? -value : value;
     }
-    if (!skip_list(reader))
+    if (dimension > 0 && !skip_list(reader))
         return false;
+    if (solids != NULL)
+        note_entity(solids, dimension, tag, first);
     if (chosen && reader->physical != 0) {
         ARRAY_GROW(reader->chosen, reader->n_chosen + 1, reader->chosen_capacity);
         reader->chosen[reader->n_chosen++] = tag;
@@ -286,13 +349,11 @@ static bool read_entities(struct reader *reader)
             return false;
     if (!reader->bytes)
         scan_skip_line(&reader->scan);
-    for (int d = 0; d < SURFACE; d++)
+    for (int d = 0; d <= (reader->solids != NULL ? 3 : SURFACE); d++)
         for (int64_t k = 0; k < n[d]; k++) /* in text a line each */
-            if (!skip_entity(reader, d))
+            if (!(d == SURFACE || reader->solids != NULL ? read_entity(reader, d)
+                                                         : skip_entity(reader, d)))
                 return false;
-    for (int64_t k = 0; k < n[SURFACE]; k++)
-        if (!read_surface_entity(reader))
-            return false;
     return true;
 }
 
@@ -386,9 +447,35 @@ static bool read_nodes(struct reader *reader)
 /* ---- Elements
  * --------------------------------------------------------------------------------- */
 
-/* Corners of the elements that are taken; 0: left aside; -1: refused. */
-static int corners_of(int64_t type)
+/* Of what solids are made, and what their groups may hold; all else is refused. */
+static int corners_of_solids(int64_t type, int *dimension)
 {
+    switch (type) {
+    case POINT:
+        *dimension = 0;
+        return 1;
+    case LINE:
+        *dimension = 1;
+        return 2;
+    case TRIANGLE:
+    case QUAD:
+        *dimension = SURFACE;
+        return type == TRIANGLE ? 3 : 4;
+    case TETRAHEDRON:
+    case HEXAHEDRON:
+        *dimension = 3;
+        return type == TETRAHEDRON ? 4 : 8;
+    default:
+        return -1;
+    }
+}
+
+/* Corners of the elements that are taken; 0: left aside; -1: refused. */
+static int corners_of(const struct reader *reader, int64_t type)
+{
+    int dimension;
+    if (reader->solids != NULL)
+        return corners_of_solids(type, &dimension);
     static const char second_order[] = {9, 10, 16, 20, 21, 22, 23, 24, 25};
     if (type == TRIANGLE || type == QUAD)
         return type == TRIANGLE ? 3 : 4;
@@ -398,13 +485,28 @@ static int corners_of(int64_t type)
     return 0;
 }
 
+static bool refuse_solid(struct reader *reader, const char *at, int64_t type)
+{
+    const char *kind = type == 6   ? "prisms"
+                       : type == 7 ? "pyramids"
+                                   : "which are curved or of higher order";
+    static const char EXPECTED[] = "a mesh of hexahedra with 8 and tetrahedra with 4 nodes "
+                                   "(gmsh -order 1)";
+    char what[96];
+    snprintf(what, sizeof what, "elements of type %lld, %s", (long long)type, kind);
+    return reader->bytes ? complain_at_byte(reader, at, what, EXPECTED)
+                         : scan_complain(&reader->scan, "%s; %s is expected", what, EXPECTED);
+}
+
 static bool read_type(struct reader *reader, int64_t *type)
 {
     const char *at = reader->scan.at;
     if (!read_whole(reader, SHORT, 1, 1000, type, "the type of an element"))
         return false;
-    if (corners_of(*type) >= 0)
+    if (corners_of(reader, *type) >= 0)
         return true;
+    if (reader->solids != NULL)
+        return refuse_solid(reader, at, *type);
     if (!reader->bytes)
         return scan_complain(&reader->scan,
                              "elements of type %lld, which are curved; triangles and quads of "
@@ -433,6 +535,25 @@ static bool skip_element(struct reader *reader, int64_t type)
     return complain_at_byte(reader, reader->scan.at, what, "a mesh of lower order");
 }
 
+/* The next corner of an element: its node. */
+static bool read_corner(struct reader *reader, int *corner)
+{
+    struct node wanted = {0};
+    if (!read_whole(reader, tag_size(reader), 1, INT64_MAX, &wanted.tag, TAG))
+        return false;
+    const struct node *node = reader->n_nodes > 0
+                                  ? bsearch(&wanted, reader->nodes, (size_t)reader->n_nodes,
+                                            sizeof *reader->nodes, compare_nodes)
+                                  : NULL;
+    if (node == NULL)
+        return scan_complain(&reader->scan,
+                             "there is no node %lld; one of the section $Nodes before it "
+                             "is expected",
+                             (long long)wanted.tag);
+    *corner = (int)(node - reader->nodes);
+    return true;
+}
+
 /* The corners of an element that is in the group. */
 static bool read_corners(struct reader *reader, int n)
 {
@@ -440,27 +561,72 @@ static bool read_corners(struct reader *reader, int n)
     if (reader->surface->n_facets == SURFACE_FACETS_MOST)
         return scan_complain(&reader->scan, "more than %d facets; fewer are expected",
                              SURFACE_FACETS_MOST);
-    for (int k = 0; k < n; k++) {
-        struct node wanted = {0};
-        if (!read_whole(reader, tag_size(reader), 1, INT64_MAX, &wanted.tag, TAG))
+    for (int k = 0; k < n; k++)
+        if (!read_corner(reader, &corners[k]))
             return false;
-        const struct node *node = reader->n_nodes > 0
-                                      ? bsearch(&wanted, reader->nodes, (size_t)reader->n_nodes,
-                                                sizeof *reader->nodes, compare_nodes)
-                                      : NULL;
-        if (node == NULL)
-            return scan_complain(&reader->scan,
-                                 "there is no node %lld; one of the section $Nodes before it "
-                                 "is expected",
-                                 (long long)wanted.tag);
-        corners[k] = (int)(node - reader->nodes);
-    }
     surface_add_facet(reader->surface, corners[0], corners[1], corners[2], corners[3]);
     return true;
 }
 
+/* The group of this dimension and number, made where there is none yet. */
+static int find_group(struct solids *solids, int dimension, int64_t tag)
+{
+    struct job_volume *volume = solids->into;
+    char name[JOB_VOLUME_NAME];
+    if (volume->n_groups > 0 && solids->last.dimension == dimension && solids->last.tag == tag)
+        return solids->last_group;
+    solids->last = (struct name){.dimension = dimension, .tag = tag};
+    snprintf(name, sizeof name, "%lld", (long long)tag);
+    for (int k = 0; k < solids->n_names; k++) {
+        const struct name *known = &solids->names[k];
+        if (known->dimension == dimension && known->tag == tag)
+            snprintf(name, sizeof name, "%.*s", (int)known->length, known->text);
+    }
+    for (int g = 0; g < volume->n_groups; g++)
+        if (volume->groups[g].dimension == dimension &&
+            strcmp(volume->groups[g].name, name) == 0)
+            return solids->last_group = g;
+    ARRAY_GROW(volume->groups, volume->n_groups + 1, solids->group_capacity);
+    struct job_volume_group *group = &volume->groups[volume->n_groups];
+    group->dimension = dimension;
+    memcpy(group->name, name, sizeof name);
+    return solids->last_group = volume->n_groups++;
+}
+
+/* An element of these physical groups, as it stands or falls to solids. */
+static bool read_solid(struct reader *reader, int64_t type, int64_t number, int n_physicals,
+                       const int64_t *physicals)
+{
+    struct solids *solids = reader->solids;
+    struct job_volume *volume = solids->into;
+    int corners[8] = {-1, -1, -1, -1, -1, -1, -1, -1}, dimension = 0;
+    const int n = corners_of_solids(type, &dimension);
+    for (int k = 0; k < n; k++)
+        if (!read_corner(reader, &corners[k]))
+            return false;
+    if (dimension == 3) {
+        if (volume->n_elements == GMSH_ELEMENTS_MOST)
+            return scan_complain(&reader->scan, "more than %d elements; fewer are expected",
+                                 GMSH_ELEMENTS_MOST);
+        ARRAY_GROW(volume->elements, volume->n_elements + 1, solids->element_capacity);
+        ARRAY_GROW(volume->element_numbers, volume->n_elements + 1, solids->number_capacity);
+        volume->element_numbers[volume->n_elements] = number;
+        memcpy(volume->elements[volume->n_elements], corners, sizeof corners);
+        corners[0] = volume->n_elements++;
+    }
+    for (int k = 0; k < n_physicals; k++) {
+        if (physicals[k] == 0)
+            continue;
+        struct member member = {find_group(solids, dimension, physicals[k]), {0}};
+        memcpy(member.item, corners, sizeof member.item);
+        ARRAY_GROW(solids->members, solids->n_members + 1, solids->member_capacity);
+        solids->members[solids->n_members++] = member;
+    }
+    return true;
+}
+
 /* The tags and the corners of an element. */
-static bool read_element_22(struct reader *reader, int64_t type, int64_t n_tags)
+static bool read_element_22(struct reader *reader, int64_t type, int64_t number, int64_t n_tags)
 {
     int64_t tag, physical = 0;
     for (int64_t k = 0; k < n_tags; k++) {
@@ -470,7 +636,9 @@ static bool read_element_22(struct reader *reader, int64_t type, int64_t n_tags)
     }
     if (physical < 0 && physical > -INT64_MAX) /* looks the other way: no matter */
         physical = -physical;
-    const int n = corners_of(type);
+    if (reader->solids != NULL)
+        return read_solid(reader, type, number, 1, &physical);
+    const int n = corners_of(reader, type);
     reader->n_surface_elements += n > 0;
     if (n == 0 || (reader->group != NULL && physical != reader->physical))
         return skip_element(reader, type);
@@ -481,7 +649,7 @@ static bool read_element_22(struct reader *reader, int64_t type, int64_t n_tags)
  * elements, how many tags, and each with its number.  Gives how many were read. */
 static bool read_elements_22(struct reader *reader, int64_t left, int64_t *n_read)
 {
-    int64_t number, type, n_tags, n = 1;
+    int64_t number = 0, type, n_tags, n = 1;
     if (!reader->bytes && !read_any(reader, SHORT, &number))
         return false;
     if (!read_type(reader, &type) ||
@@ -491,7 +659,7 @@ static bool read_elements_22(struct reader *reader, int64_t left, int64_t *n_rea
         return false;
     for (int64_t k = 0; k < n; k++)
         if ((reader->bytes && !read_any(reader, SHORT, &number)) ||
-            !read_element_22(reader, type, n_tags))
+            !read_element_22(reader, type, number, n_tags))
             return false;
     *n_read = n;
     return true;
@@ -505,6 +673,24 @@ static bool is_chosen(const struct reader *reader, int64_t entity)
     return reader->group == NULL;
 }
 
+/* The elements of an entity. */
+static bool read_solid_block(struct reader *reader, int64_t dimension, int64_t tag,
+                             int64_t type, int64_t n_elements)
+{
+    const struct solids *solids = reader->solids;
+    const struct entity *entity = NULL;
+    int64_t number;
+    for (int k = 0; k < solids->n_entities && entity == NULL; k++)
+        if (solids->entities[k].dimension == dimension && solids->entities[k].tag == tag)
+            entity = &solids->entities[k];
+    for (int64_t k = 0; k < n_elements; k++)
+        if (!read_any(reader, LONG, &number) ||
+            !read_solid(reader, type, number, entity != NULL ? entity->n : 0,
+                        entity != NULL ? solids->physicals + entity->first : NULL))
+            return false;
+    return true;
+}
+
 /* number corners..., a line each */
 static bool read_element_block(struct reader *reader)
 {
@@ -513,7 +699,9 @@ static bool read_element_block(struct reader *reader)
         !read_any(reader, SHORT, &entity) || !read_type(reader, &type) ||
         !read_count(reader, &n_elements))
         return false;
-    const int n = corners_of(type);
+    if (reader->solids != NULL)
+        return read_solid_block(reader, dimension, entity, type, n_elements);
+    const int n = corners_of(reader, type);
     const bool taken = n > 0 && is_chosen(reader, entity);
     reader->n_surface_elements += n > 0 ? n_elements : 0;
     for (int64_t k = 0; k < n_elements; k++) {
@@ -595,15 +783,21 @@ static bool read_section(struct reader *reader)
     return fine && skip_section(scan, end);
 }
 
-static bool read_file(struct reader *reader)
+static bool read_sections(struct reader *reader)
 {
     struct scan *scan = &reader->scan;
     bool any = false;
     for (; scan_word(scan); any = true)
         if (!read_section(reader))
             return false;
-    if (!any)
-        return scan_complain(scan, "there is nothing in it; $MeshFormat is expected");
+    return any || scan_complain(scan, "there is nothing in it; $MeshFormat is expected");
+}
+
+static bool read_file(struct reader *reader)
+{
+    struct scan *scan = &reader->scan;
+    if (!read_sections(reader))
+        return false;
     if (reader->group != NULL && reader->physical == 0)
         return scan_complain(scan,
                              "there is no physical group '%s' of surfaces; %s%s is expected",
@@ -636,5 +830,58 @@ bool gmsh_read(struct surface *surface, const char *path, const char *bytes, siz
         surface_clear(surface);
     free(reader.nodes);
     free(reader.chosen);
+    return fine;
+}
+
+/* Puts nodes in their place, and the items of groups one behind the other. */
+static void finish_solids(const struct reader *reader)
+{
+    const struct solids *solids = reader->solids;
+    struct job_volume *volume = solids->into;
+    volume->n_nodes = reader->n_nodes;
+    volume->nodes = array_allocate((size_t)volume->n_nodes, sizeof *volume->nodes);
+    volume->node_numbers =
+        array_allocate((size_t)volume->n_nodes, sizeof *volume->node_numbers);
+    for (int k = 0; k < volume->n_nodes; k++) {
+        volume->nodes[k] = reader->nodes[k].place;
+        volume->node_numbers[k] = reader->nodes[k].tag;
+    }
+    volume->n_items = solids->n_members;
+    volume->items = array_allocate((size_t)volume->n_items, sizeof *volume->items);
+    for (int k = 0; k < solids->n_members; k++)
+        volume->groups[solids->members[k].group].n++;
+    for (int g = 1; g < volume->n_groups; g++)
+        volume->groups[g].first = volume->groups[g - 1].first + volume->groups[g - 1].n;
+    for (int g = 0; g < volume->n_groups; g++)
+        volume->groups[g].n = 0;
+    for (int k = 0; k < solids->n_members; k++) {
+        struct job_volume_group *group = &volume->groups[solids->members[k].group];
+        memcpy(volume->items[group->first + group->n++], solids->members[k].item,
+               sizeof *volume->items);
+    }
+}
+
+bool gmsh_read_solid(struct job_volume *volume, const char *path, const char *bytes, size_t n,
+                     char **why)
+{
+    struct solids solids = {.into = volume};
+    struct reader reader = {.n_bytes = (int64_t)n, .solids = &solids, .nodes_ascend = true};
+    *volume = (struct job_volume){0};
+    scan_init(&reader.scan, path, bytes, n);
+    bool fine = read_sections(&reader);
+    if (fine && volume->n_elements == 0)
+        fine = scan_complain(&reader.scan, "there are no hexahedra or tetrahedra in it; a mesh "
+                                           "of volumes (gmsh -3) is expected");
+    *why = reader.scan.why;
+    if (fine)
+        finish_solids(&reader);
+    else
+        job_volume_clear(volume);
+    free(reader.nodes);
+    free(reader.chosen);
+    free(solids.names);
+    free(solids.entities);
+    free(solids.physicals);
+    free(solids.members);
     return fine;
 }

@@ -41,7 +41,8 @@ void region_clear(struct region *region);
  * an inside keep their surface. */
 void region_repeat(struct region *region, const struct periodic *periodic);
 
-/* Is x inside, at least `margin` (>= 0) from the region's surface? */
+/* Is x inside, at least `margin` from the region's surface?  A margin below 0, which an inside
+ * does not have, lets x be that far outside. */
 bool region_contains(const struct region *region, struct vec3 x, double margin);
 
 /* Does the straight way to x, along and as long as `way`, meet the region?  Of the inside of a

@@ -19,6 +19,7 @@
 #include "run/inflow.h"
 #include "run/limits.h"
 #include "run/simulation.h"
+#include "run/solid_survey.h"
 #include "run/start.h"
 #include "run/step.h"
 #include "run/survey.h"
@@ -343,6 +344,8 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
     struct bodies bodies = {.n = 0};
     struct chain before = {.path = NULL};
     read_surfaces(job, mistakes);
+    if (mistakes->n == 0)
+        solid_survey_check(job, mistakes);
     if (mistakes->n == 0) {
         bodies_build(&bodies, job);
         open_start(job, &before, mistakes);

@@ -12,6 +12,7 @@
 #include "model/geometry.h"
 #include "model/rigid.h"
 #include "model/sphere.h"
+#include "run/solid_survey.h"
 
 /* A drawing wider than this many radii is probably in other units; or one that is wider than
  * this many clouds of spheres, and not small beside a sphere. */
@@ -21,6 +22,8 @@ enum { PLACE = 96, NAME = 300 };
 
 static bool is_drawn(const struct job_body *body)
 {
+    if (body->model == JOB_MODEL_SOLID)
+        return body->solid.kind == JOB_MESH_GMSH;
     return body->geometry == JOB_GEOMETRY_MESH || body->geometry == JOB_GEOMETRY_STL ||
            body->geometry == JOB_GEOMETRY_GMSH;
 }
@@ -101,7 +104,10 @@ static void print_body(const struct job *job, const struct body *body)
 void survey_print(const struct job *job, const struct bodies *bodies)
 {
     for (int b = 0; b < bodies->n; b++)
-        print_body(job, &bodies->list[b]);
+        if (job->bodies[b].model == JOB_MODEL_SOLID)
+            solid_survey_print(job, b);
+        else
+            print_body(job, &bodies->list[b]);
 }
 
 /* The middle of an edge, in words. */
@@ -217,6 +223,8 @@ void survey_warn(const struct job *job, const struct bodies *bodies,
     const struct cloud cloud = find_cloud(spheres, comm);
     for (int b = 0; b < bodies->n && comm->rank == 0; b++) {
         const struct mesh *mesh = &bodies->list[b].mesh;
+        if (job->bodies[b].model == JOB_MODEL_SOLID)
+            solid_survey_warn(job, b);
         if (!is_drawn(&job->bodies[b]))
             continue;
         const struct mesh_survey survey = mesh_survey(mesh);

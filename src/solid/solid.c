@@ -82,7 +82,7 @@ static struct solid_element_material build_material(const struct solid_material 
     return material;
 }
 
-static void build_nodes(struct solid *solid, const struct solid_mesh *mesh)
+static void build_nodes(struct solid *solid, const struct solid_parts *mesh)
 {
     const size_t n = (size_t)mesh->n_nodes;
     solid->n_nodes = mesh->n_nodes;
@@ -101,7 +101,7 @@ static void build_nodes(struct solid *solid, const struct solid_mesh *mesh)
         memcpy(solid->node[n + c].lane, PADDING[c], sizeof PADDING[c]);
 }
 
-static void build_elements(struct solid *solid, const struct solid_mesh *mesh)
+static void build_elements(struct solid *solid, const struct solid_parts *mesh)
 {
     const size_t n = (size_t)mesh->n_elements, padded = n + 1;
     solid->n_elements = mesh->n_elements;
@@ -155,7 +155,7 @@ static void build_meets(struct solid *solid)
     free(next);
 }
 
-void solid_create(struct solid *solid, const struct solid_mesh *mesh, int n_materials,
+void solid_create(struct solid *solid, const struct solid_parts *mesh, int n_materials,
                   const struct solid_material *materials, enum isa isa)
 {
     *solid = (struct solid){.n_materials = n_materials, .kernel = solid_element_choose(isa)};

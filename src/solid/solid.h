@@ -47,7 +47,7 @@ struct solid_yield_point {
 };
 
 /* What a solid is built from; copied. */
-struct solid_mesh {
+struct solid_parts {
     int n_nodes;
     double (*places)[3]; /* [m] */
     int n_elements;
@@ -132,7 +132,7 @@ extern const struct field solid_node_fields[SOLID_NODE_N_FIELDS];
 extern const struct field solid_element_fields[SOLID_ELEMENT_N_FIELDS];
 
 /* At rest and without stress at the mesh's places, all of it moved here. */
-void solid_create(struct solid *solid, const struct solid_mesh *mesh, int n_materials,
+void solid_create(struct solid *solid, const struct solid_parts *mesh, int n_materials,
                   const struct solid_material *materials, enum isa isa);
 void solid_destroy(struct solid *solid);
 

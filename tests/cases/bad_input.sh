@@ -107,6 +107,56 @@ says "--set:1:10: time.end: '3kg' is a mass; a time like 10 us is expected"
 says "--set:1:1: 'spheres.9.radius' leads nowhere; a path like spheres.0.radius is expected"
 result "overrides"
 
+# ---------------------------------------------------------------- meshes of solids
+
+# mesh NODES ELEMENTS: a Gmsh file of a cube and a job whose body it is.
+cube="1 0 0 0\n2 1 0 0\n3 1 1 0\n4 0 1 0\n15 0 0 1\n16 1 0 1\n17 1 1 1\n18 0 1 1\n"
+mesh()
+{
+    # shellcheck disable=SC2059 # the texts have line ends
+    printf "\$MeshFormat\n2.2 0 8\n\$EndMeshFormat\n\$PhysicalNames\n2\n2 5 \"lid\"\n3 6 \"block\"\n\$EndPhysicalNames\n\$Nodes\n$1\$EndNodes\n\$Elements\n$2\$EndElements\n" > mesh.msh
+    sed -e '/^bodies:/q' "$root/tests/cases/bad/solid.yaml" | grep -v '^# expect\|hardening' > solid.yaml
+    sed -i 's/^materials:/&\n  ore: {density: 2367, young: 2.0e7, poisson: 0.2}\n  tin: {density: 7310, young: 50 GPa, poisson: 0.3}/' solid.yaml
+    echo "  - {name: block, material: tin, model: solid, mesh: {kind: gmsh, file: mesh.msh, move: [0, 0, 5]${3:-}}, boundary: [{set: lid, pressure: 1 MPa}]}" >> solid.yaml
+}
+hexahedron="2 5 2 6 1 1 2 3 4 15 16 17 18\n"
+
+mesh "8\n$cube" "2\n1 3 2 5 1 15 16 17 18\n$hexahedron"
+timeout 60 "$tremie" check solid.yaml > out 2> said || why+=" is refused;"
+grep -q "body      block: solid, tin, 1 hexahedra, 0 tetrahedra, 8 nodes, mass 7310 kg" out || why+=" is not told;"
+grep -q "set lid: 4 nodes, 1 sides, 0 elements" out || why+=" has no lid;"
+result "a mesh without faults"
+refused_quickly "$tremie" run solid.yaml
+says "error: body 'block' is a solid, and runs know rigid bodies alone;"
+result "a run with a solid"
+
+mesh "8\n$cube" "2\n1 3 2 5 1 15 16 17 18\n2 5 2 6 1 15 16 17 18 1 2 3 4\n"
+refused_quickly "$tremie" check solid.yaml
+says "mesh.msh: body 'block': element 2 at (0.5, 0.5, 5.5) m is flipped, its volume is -1 m3;"
+result "a flipped element"
+
+mesh "9\n${cube}99 3 0 0\n" "2\n1 3 2 5 1 15 16 17 18\n$hexahedron"
+refused_quickly "$tremie" check solid.yaml
+says "mesh.msh: body 'block': node 99 at (3, 0, 5) m belongs to no element;"
+result "a loose node"
+mesh "9\n${cube}99 3 0 0\n" "2\n1 3 2 5 1 15 16 17 18\n$hexahedron" ", group: block"
+timeout 60 "$tremie" check solid.yaml > out 2> said || why+=" is refused;"
+result "a group without the loose node"
+mesh "8\n$cube" "1\n$hexahedron" ", group: blok"
+refused_quickly "$tremie" check solid.yaml
+says "mesh.msh: there is no physical volume 'blok'; one of block is expected"
+result "a group that is not there"
+
+mesh "8\n$cube" "2\n1 2 2 5 1 15 16 17\n$hexahedron"
+refused_quickly "$tremie" check solid.yaml
+says "bodies.0.boundary.0.set: set 'lid' has no sides on the surface that a pressure could act on; some are expected"
+result "facets that are no sides"
+
+mesh "8\n$cube" "2\n1 3 2 5 1 15 16 17 18\n2 6 2 6 1 1 2 3 15 16 17\n"
+refused_quickly "$tremie" check solid.yaml
+says "mesh.msh:23:3: elements of type 6, prisms;"
+result "prisms"
+
 # ---------------------------------------------------------------- several ranks
 
 for name in several alias_bomb; do

@@ -361,7 +361,8 @@ TEST(apart_nothing_remains)
  * silent. */
 TEST(materials_make_pairs)
 {
-    struct job_material list[] = {{NULL, 2800.0, 48e9, 0.20}, {NULL, 7000.0, 100e9, 0.25}};
+    struct job_material list[] = {{.density = 2800.0, .young = 48e9, .poisson = 0.20},
+                                  {.density = 7000.0, .young = 100e9, .poisson = 0.25}};
     struct job_pair asked[] = {
         {.a = 0, .b = 0, .friction = 0.3, .restitution = 0.5},
         {.a = 0, .b = 1, .friction = 0.4, .restitution = 1.0, .rolling_friction = 0.1}};

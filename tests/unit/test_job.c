@@ -113,6 +113,58 @@ TEST(bodies_of_all_shapes)
     EXPECT(job.bodies[3].facets[1][3] == 3);
 }
 
+static const char solids[] =
+    "time: {end: 1.5, step: 1.0e-5}\n"
+    "materials:\n"
+    "  ore: {density: 2367, young: 6.25e10, poisson: 0.2, yield: 2 MPa, hardening: 1 MPa}\n"
+    "  tin: {density: 7310, young: 5e10, poisson: 0.3,"
+    " hardening_table: [{strain: 0, stress: 9 MPa}, {strain: 0.5, stress: 20 MPa}]}\n"
+    "contact: {pairs: [{between: [ore, ore], friction: 0.5, restitution: 0.5}]}\n" SPHERES
+    "bodies:\n"
+    "  - name: a\n"
+    "    material: ore\n"
+    "    model: solid\n"
+    "    mesh: {kind: plate, corner: [0, 0, 9], size: [2, 1], thickness: 5 mm, cell: 2 mm,"
+    " elements: tetrahedra, rotate: {axis: [0, 0, 2], angle: 90 deg}}\n"
+    "    sets: [{name: half, region: {kind: box, min: [0, 0, 0], max: [1, 1, 9]}}]\n"
+    "    boundary:\n"
+    "      - {set: half, fixed: [x, z]}\n"
+    "      - {set: top, direction: z, velocity: 0}\n"
+    "      - {set: top, pressure_table: [{time: 0, pressure: 0}, {time: 1 ms, pressure: 2 bar}]}\n"
+    "    velocity: [0, 0, -227]\n"
+    "    damping: {stiffness: 1 us}\n"
+    "    hourglass: {kind: viscous}\n"
+    "  - {name: b, material: ore, model: solid, mesh: {kind: tube, from: [0, 0, 9], to: [0, 0, 8],"
+    " inner: 1, outer: 2, cells: [12, 2, 3]}}\n";
+
+TEST(solids_are_filled_and_written)
+{
+    struct job read;
+    EXPECT(job_from(solids, 0, NULL));
+    EXPECT(job.n_materials == 1 && job.materials[0].yield == 2e6); /* the tin is not used */
+    EXPECT(job.bodies[0].model == JOB_MODEL_SOLID && job.bodies[0].place.line == 9);
+    const struct job_solid *solid = &job.bodies[0].solid;
+    EXPECT(solid->kind == JOB_MESH_PLATE && solid->elements == JOB_ELEMENTS_TETRAHEDRA);
+    EXPECT(solid->thickness == 0.005 && solid->cell == 0.002 && solid->cells[0] == 0);
+    EXPECT(solid->n_sets == 1 && solid->sets[0].region.max.x == 1.0);
+    EXPECT(solid->n_boundary == 3 && solid->boundary[0].fixed == 5);
+    EXPECT(solid->boundary[1].has_velocity && solid->boundary[1].direction == 2);
+    EXPECT(solid->boundary[2].n_pressures == 2 && solid->boundary[2].pressures[1].value == 2e5);
+    EXPECT(solid->boundary[2].place.line == 17 && solid->velocity.z == -227.0);
+    EXPECT(solid->damping.mass == 0.0 && solid->damping.stiffness == 1e-6);
+    EXPECT(solid->hourglass.kind == JOB_HOURGLASS_VISCOUS);
+    EXPECT(solid->hourglass.coefficient == 0.05);
+    EXPECT(job.bodies[1].solid.cells[2] == 3 && job.bodies[1].outer == 2.0);
+    char *text = job_write(&job), *again = NULL;
+    EXPECT(job_read_text(&read, "job.yaml", text, &mistakes));
+    again = job_write(&read);
+    EXPECT_STRING(again, text);
+    EXPECT(job_difference(text, again) == NULL);
+    job_clear(&read);
+    free(text);
+    free(again);
+}
+
 TEST(all_mistakes_are_listed_at_once)
 {
     EXPECT(!job_from("titel: x\n"

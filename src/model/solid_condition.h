@@ -1,0 +1,42 @@
+/*
+ * What is prescribed on a set of a solid, as a function of time: nodes that stay, go a way or
+ * with a velocity, a force on nodes, a pressure on sides.  Nothing is accumulated: a restart
+ * finds the same bits.  Local, all of it.
+ */
+#ifndef TREMIE_MODEL_SOLID_CONDITION_H
+#define TREMIE_MODEL_SOLID_CONDITION_H
+
+struct job_boundary;
+struct job_value;
+struct solid_mesh;
+struct solid_mesh_set;
+
+enum solid_condition_kind {
+    SOLID_CONDITION_FIXED,
+    SOLID_CONDITION_DISPLACEMENT,
+    SOLID_CONDITION_VELOCITY,
+    SOLID_CONDITION_FORCE,
+    SOLID_CONDITION_PRESSURE
+};
+
+struct solid_condition {
+    enum solid_condition_kind kind;
+    const struct solid_mesh_set *set;
+    int directions;               /* a set of enum job_direction; none of a pressure */
+    double constant;              /* the value where there are no rows */
+    int n;                        /* rows of a table */
+    const struct job_value *rows; /* of the job */
+};
+
+/* The item as it acts on a mesh, which has the set; both are to outlive it. */
+struct solid_condition solid_condition_of(const struct job_boundary *asked,
+                                          const struct solid_mesh *mesh);
+
+/* Its value: displacement [m], velocity [m/s], force on all of the set's nodes together [N],
+ * pressure against the surface [Pa]; 0 of what is fixed. */
+double solid_condition_at(const struct solid_condition *condition, double time);
+/* How far the nodes are from their places at the start: what is fixed, displaced, or the exact
+ * integral of a velocity [m]. */
+double solid_condition_travel(const struct solid_condition *condition, double time);
+
+#endif

@@ -1,0 +1,480 @@
+/* See solid_mesh.h.  Sides find each other through a table hashed by their nodes, so that the
+ * work grows with their number however a file joins them. */
+#include "model/solid_mesh.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/report.h"
+#include "job/job.h"
+#include "model/geometry.h"
+#include "model/region.h"
+#include "model/solid_shape.h"
+
+/* ---------------------------------------------------------------------------------- sides */
+
+int solid_mesh_side_nodes(const int element[8], int side, int nodes[4])
+{
+    static const int hexahedron[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
+                                         {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
+    static const int tetrahedron[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    const int n = solid_mesh_n_corners(element) == 8 ? 4 : 3;
+    nodes[3] = -1;
+    for (int k = 0; k < n; k++)
+        nodes[k] = element[n == 4 ? hexahedron[side][k] : tetrahedron[side][k]];
+    return n;
+}
+
+/* All sides of all elements, by their nodes. */
+struct side_table {
+    int n_heads;
+    int *heads, *next; /* numbers of sides; -1: none */
+};
+
+/* The nodes of a side or facet in ascending order. */
+static void sort_four(const int nodes[4], int sorted[4])
+{
+    memcpy(sorted, nodes, 4 * sizeof *sorted);
+    for (int k = 1; k < 4; k++)
+        for (int j = k; j > 0 && sorted[j] < sorted[j - 1]; j--) {
+            const int swap = sorted[j];
+            sorted[j] = sorted[j - 1];
+            sorted[j - 1] = swap;
+        }
+}
+
+static int head_of(const struct side_table *table, const int sorted[4])
+{
+    uint64_t hash = 0;
+    for (int k = 0; k < 4; k++)
+        hash = (hash ^ (uint64_t)(uint32_t)sorted[k]) * UINT64_C(0x9e3779b97f4a7c15) ^
+               (hash >> 29);
+    return (int)((hash >> 20) % (uint64_t)table->n_heads);
+}
+
+static void sorted_nodes(const struct solid_mesh *mesh, int number, int sorted[4])
+{
+    int nodes[4];
+    solid_mesh_side_nodes(mesh->elements[number / SOLID_MESH_SIDES], number % SOLID_MESH_SIDES,
+                          nodes);
+    sort_four(nodes, sorted);
+}
+
+static void table_build(struct side_table *table, const struct solid_mesh *mesh)
+{
+    const size_t n = (size_t)mesh->n_elements * SOLID_MESH_SIDES;
+    table->n_heads = (int)(n / 2 + 1);
+    table->heads = array_allocate((size_t)table->n_heads, sizeof *table->heads);
+    table->next = array_allocate(n, sizeof *table->next);
+    memset(table->heads, -1, (size_t)table->n_heads * sizeof *table->heads);
+    for (int e = mesh->n_elements - 1; e >= 0; e--) /* so that lists ascend */
+        for (int s = solid_mesh_n_sides(mesh->elements[e]) - 1; s >= 0; s--) {
+            const int number = SOLID_MESH_SIDES * e + s;
+            int sorted[4];
+            sorted_nodes(mesh, number, sorted);
+            int *head = &table->heads[head_of(table, sorted)];
+            table->next[number] = *head;
+            *head = number;
+        }
+}
+
+static void table_clear(struct side_table *table)
+{
+    free(table->heads);
+    free(table->next);
+}
+
+/* The first side with these nodes from `number` on in its list; -1: none. */
+static int find_side(const struct side_table *table, const struct solid_mesh *mesh, int number,
+                     const int sorted[4])
+{
+    for (; number >= 0; number = table->next[number]) {
+        int theirs[4];
+        sorted_nodes(mesh, number, theirs);
+        if (memcmp(theirs, sorted, sizeof theirs) == 0)
+            return number;
+    }
+    return -1;
+}
+
+static int find_first(const struct side_table *table, const struct solid_mesh *mesh,
+                      const int nodes[4])
+{
+    int sorted[4];
+    sort_four(nodes, sorted);
+    return find_side(table, mesh, table->heads[head_of(table, sorted)], sorted);
+}
+
+/* Sides with the same nodes as this one, the first of them: they become partners. */
+static void join(const struct side_table *table, const struct solid_mesh *mesh, int first,
+                 int *partners)
+{
+    int sorted[4];
+    sorted_nodes(mesh, first, sorted);
+    const int second = find_side(table, mesh, table->next[first], sorted);
+    if (second < 0)
+        return;
+    partners[first] = second;
+    partners[second] = first;
+    for (int more = find_side(table, mesh, table->next[second], sorted); more >= 0;
+         more = find_side(table, mesh, table->next[more], sorted))
+        partners[first] = partners[second] = partners[more] = SOLID_MESH_SEVERAL;
+}
+
+int *solid_mesh_partners(const struct solid_mesh *mesh)
+{
+    struct side_table table;
+    int *partners =
+        array_allocate((size_t)mesh->n_elements * SOLID_MESH_SIDES, sizeof *partners);
+    table_build(&table, mesh);
+    for (int e = 0; e < mesh->n_elements; e++)
+        for (int s = 0; s < SOLID_MESH_SIDES; s++)
+            partners[SOLID_MESH_SIDES * e + s] = s < solid_mesh_n_sides(mesh->elements[e])
+                                                     ? SOLID_MESH_OUTSIDE
+                                                     : SOLID_MESH_NO_SIDE;
+    for (int number = 0; number < SOLID_MESH_SIDES * mesh->n_elements; number++)
+        if (partners[number] == SOLID_MESH_OUTSIDE)
+            join(&table, mesh, number, partners);
+    table_clear(&table);
+    return partners;
+}
+
+int solid_mesh_surface(const struct solid_mesh *mesh, struct solid_mesh_side **sides)
+{
+    int *partners = solid_mesh_partners(mesh);
+    int n = 0;
+    for (int number = 0; number < SOLID_MESH_SIDES * mesh->n_elements; number++)
+        n += partners[number] == SOLID_MESH_OUTSIDE;
+    *sides = array_allocate((size_t)n, sizeof **sides);
+    n = 0;
+    for (int number = 0; number < SOLID_MESH_SIDES * mesh->n_elements; number++)
+        if (partners[number] == SOLID_MESH_OUTSIDE)
+            (*sides)[n++] =
+                (struct solid_mesh_side){number / SOLID_MESH_SIDES, number % SOLID_MESH_SIDES};
+    free(partners);
+    return n;
+}
+
+/* ----------------------------------------------------------------------------------- sets */
+
+void solid_mesh_list_add(struct solid_mesh_list *list, int item)
+{
+    ARRAY_GROW(list->items, list->n + 1, list->capacity);
+    list->items[list->n++] = item;
+}
+
+static int compare_ints(const void *a, const void *b)
+{
+    const int *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
+/* The list in order, everything once. */
+static int *sorted_list(const struct solid_mesh_list *list, int *n)
+{
+    int *items = array_allocate((size_t)list->n, sizeof *items);
+    *n = 0;
+    if (list->n == 0)
+        return items;
+    memcpy(items, list->items, (size_t)list->n * sizeof *items);
+    qsort(items, (size_t)list->n, sizeof *items, compare_ints);
+    for (int k = 0; k < list->n; k++)
+        if (*n == 0 || items[k] > items[*n - 1])
+            items[(*n)++] = items[k];
+    return items;
+}
+
+void solid_mesh_add_set(struct solid_mesh *mesh, const char *name,
+                        const struct solid_mesh_list *nodes,
+                        const struct solid_mesh_list *sides,
+                        const struct solid_mesh_list *elements)
+{
+    mesh->sets = array_resize(mesh->sets, (size_t)mesh->n_sets, (size_t)mesh->n_sets + 1,
+                              sizeof *mesh->sets);
+    struct solid_mesh_set *set = &mesh->sets[mesh->n_sets++];
+    set->name = array_string(name);
+    set->nodes = sorted_list(nodes, &set->n_nodes);
+    set->elements = sorted_list(elements, &set->n_elements);
+    int *numbers = sorted_list(sides, &set->n_sides);
+    set->sides = array_allocate((size_t)set->n_sides, sizeof *set->sides);
+    for (int k = 0; k < set->n_sides; k++)
+        set->sides[k] = (struct solid_mesh_side){numbers[k] / SOLID_MESH_SIDES,
+                                                 numbers[k] % SOLID_MESH_SIDES};
+    free(numbers);
+}
+
+const struct solid_mesh_set *solid_mesh_find(const struct solid_mesh *mesh, const char *name)
+{
+    for (int k = 0; k < mesh->n_sets; k++)
+        if (strcmp(mesh->sets[k].name, name) == 0)
+            return &mesh->sets[k];
+    return NULL;
+}
+
+static void add_all(struct solid_mesh *mesh)
+{
+    struct solid_mesh_list nodes = {0}, sides = {0}, elements = {0};
+    for (int k = 0; k < mesh->n_nodes; k++)
+        solid_mesh_list_add(&nodes, k);
+    for (int e = 0; e < mesh->n_elements; e++)
+        solid_mesh_list_add(&elements, e);
+    solid_mesh_add_set(mesh, "all", &nodes, &sides, &elements);
+    free(nodes.items);
+    free(elements.items);
+}
+
+static void add_side_nodes(const struct solid_mesh *mesh, struct solid_mesh_side side,
+                           struct solid_mesh_list *nodes)
+{
+    int corners[4];
+    const int n = solid_mesh_side_nodes(mesh->elements[side.element], side.side, corners);
+    for (int k = 0; k < n; k++)
+        solid_mesh_list_add(nodes, corners[k]);
+}
+
+static void add_surface(struct solid_mesh *mesh, int n, const struct solid_mesh_side *surface)
+{
+    struct solid_mesh_list nodes = {0}, sides = {0}, elements = {0};
+    for (int k = 0; k < n; k++) {
+        solid_mesh_list_add(&sides, SOLID_MESH_SIDES * surface[k].element + surface[k].side);
+        add_side_nodes(mesh, surface[k], &nodes);
+    }
+    solid_mesh_add_set(mesh, "surface", &nodes, &sides, &elements);
+    free(nodes.items);
+    free(sides.items);
+}
+
+/* Part of the mesh's width by which a node may miss the border of a region and still count. */
+static const double ROUNDING = 1e-9;
+
+static double width_of(const struct solid_mesh *mesh)
+{
+    double most = 0.0;
+    for (int k = 0; k < mesh->n_nodes; k++) {
+        const double far = vec3_norm(vec3_sub(mesh->nodes[k], mesh->nodes[0]));
+        most = far > most ? far : most;
+    }
+    return most;
+}
+
+static void add_region(struct solid_mesh *mesh, const struct job_set *asked, int n,
+                       const struct solid_mesh_side *surface)
+{
+    struct solid_mesh_list nodes = {0}, sides = {0}, elements = {0};
+    bool *inside = array_allocate((size_t)mesh->n_nodes, sizeof *inside);
+    const double margin = -ROUNDING * width_of(mesh);
+    struct region region;
+    char *why;
+    CHECK(region_build(&region, &asked->region, NULL, &why), "set '%s': %s", asked->name, why);
+    for (int k = 0; k < mesh->n_nodes; k++) {
+        inside[k] = region_contains(&region, mesh->nodes[k], margin);
+        if (inside[k])
+            solid_mesh_list_add(&nodes, k);
+    }
+    for (int k = 0; k < n; k++) {
+        int corners[4];
+        bool all = true;
+        const int m =
+            solid_mesh_side_nodes(mesh->elements[surface[k].element], surface[k].side, corners);
+        for (int c = 0; c < m; c++)
+            all = all && inside[corners[c]];
+        if (all)
+            solid_mesh_list_add(&sides,
+                                SOLID_MESH_SIDES * surface[k].element + surface[k].side);
+    }
+    region_clear(&region);
+    solid_mesh_add_set(mesh, asked->name, &nodes, &sides, &elements);
+    free(inside);
+    free(nodes.items);
+    free(sides.items);
+}
+
+/* ----------------------------------------------------------------------------------- files */
+
+/* Is there a group of this name and dimension? */
+static const struct job_volume_group *find_group(const struct job_volume *volume,
+                                                 const char *name, int dimension)
+{
+    for (int g = 0; g < volume->n_groups; g++)
+        if (volume->groups[g].dimension == dimension &&
+            strcmp(volume->groups[g].name, name) == 0)
+            return &volume->groups[g];
+    return NULL;
+}
+
+/* Which nodes and elements of the file the body takes: their new numbers from 1; 0: not. */
+struct choice {
+    int *nodes, *elements;
+};
+
+static void choose(struct choice *choice, const struct job_volume *volume, const char *name)
+{
+    const struct job_volume_group *group = name != NULL ? find_group(volume, name, 3) : NULL;
+    int n_nodes = 0, n_elements = 0;
+    choice->nodes = array_allocate((size_t)volume->n_nodes, sizeof *choice->nodes);
+    choice->elements = array_allocate((size_t)volume->n_elements, sizeof *choice->elements);
+    for (int e = 0; e < volume->n_elements; e++)
+        choice->elements[e] = name == NULL;
+    for (int k = 0; group != NULL && k < group->n; k++)
+        choice->elements[volume->items[group->first + k][0]] = 1;
+    for (int k = 0; k < volume->n_nodes; k++)
+        choice->nodes[k] = name == NULL;
+    for (int e = 0; e < volume->n_elements; e++) {
+        if (choice->elements[e] == 0)
+            continue;
+        choice->elements[e] = ++n_elements;
+        for (int c = 0; c < solid_mesh_n_corners(volume->elements[e]); c++)
+            choice->nodes[volume->elements[e][c]] = 1;
+    }
+    for (int k = 0; k < volume->n_nodes; k++)
+        if (choice->nodes[k] != 0)
+            choice->nodes[k] = ++n_nodes;
+}
+
+static void take_file(struct solid_mesh *mesh, const struct job_volume *volume,
+                      const struct choice *choice)
+{
+    mesh->nodes = array_allocate((size_t)volume->n_nodes, sizeof *mesh->nodes);
+    mesh->node_numbers = array_allocate((size_t)volume->n_nodes, sizeof *mesh->node_numbers);
+    mesh->elements = array_allocate((size_t)volume->n_elements, sizeof *mesh->elements);
+    mesh->element_numbers =
+        array_allocate((size_t)volume->n_elements, sizeof *mesh->element_numbers);
+    for (int k = 0; k < volume->n_nodes; k++) {
+        if (choice->nodes[k] == 0)
+            continue;
+        mesh->node_numbers[mesh->n_nodes] = volume->node_numbers[k];
+        mesh->nodes[mesh->n_nodes++] = volume->nodes[k];
+    }
+    for (int e = 0; e < volume->n_elements; e++) {
+        if (choice->elements[e] == 0)
+            continue;
+        mesh->element_numbers[mesh->n_elements] = volume->element_numbers[e];
+        int *element = mesh->elements[mesh->n_elements++];
+        for (int c = 0; c < 8; c++)
+            element[c] =
+                volume->elements[e][c] >= 0 ? choice->nodes[volume->elements[e][c]] - 1 : -1;
+    }
+}
+
+/* What a set of the file holds, while its groups are gathered. */
+struct gathering {
+    struct solid_mesh_list nodes, sides, elements;
+    int n_strays;
+};
+
+/* An item of a group of points, curves or surfaces, as far as the body has its nodes. */
+static void gather_item(struct gathering *set, const struct solid_mesh *mesh,
+                        const struct side_table *table, const int item[4],
+                        const struct choice *choice, int dimension)
+{
+    int nodes[4] = {-1, -1, -1, -1};
+    for (int c = 0; c < 4 && item[c] >= 0; c++) {
+        nodes[c] = choice->nodes[item[c]] - 1;
+        if (nodes[c] < 0)
+            return;
+    }
+    for (int c = 0; c < 4 && nodes[c] >= 0; c++)
+        solid_mesh_list_add(&set->nodes, nodes[c]);
+    if (dimension != 2)
+        return;
+    const int side = find_first(table, mesh, nodes);
+    int sorted[4];
+    sort_four(nodes, sorted);
+    if (side >= 0 && find_side(table, mesh, table->next[side], sorted) < 0)
+        solid_mesh_list_add(&set->sides, side);
+    else
+        set->n_strays++;
+}
+
+static void gather(struct gathering *set, const struct solid_mesh *mesh,
+                   const struct side_table *table, const struct job_volume *volume,
+                   const struct choice *choice, const struct job_volume_group *group)
+{
+    for (int k = 0; k < group->n; k++) {
+        const int *item = volume->items[group->first + k];
+        if (group->dimension < 3) {
+            gather_item(set, mesh, table, item, choice, group->dimension);
+            continue;
+        }
+        const int e = choice->elements[item[0]] - 1;
+        if (e < 0)
+            continue;
+        solid_mesh_list_add(&set->elements, e);
+        for (int c = 0; c < solid_mesh_n_corners(mesh->elements[e]); c++)
+            solid_mesh_list_add(&set->nodes, mesh->elements[e][c]);
+    }
+}
+
+/* Groups of one name, whatever their dimensions, are one set. */
+static void add_groups(struct solid_mesh *mesh, const struct job_volume *volume,
+                       const struct choice *choice)
+{
+    struct side_table table;
+    table_build(&table, mesh);
+    for (int g = 0; g < volume->n_groups; g++) {
+        const char *name = volume->groups[g].name;
+        struct gathering set = {.n_strays = 0};
+        if (solid_mesh_find(mesh, name) != NULL)
+            continue;
+        for (int h = g; h < volume->n_groups; h++)
+            if (strcmp(volume->groups[h].name, name) == 0)
+                gather(&set, mesh, &table, volume, choice, &volume->groups[h]);
+        solid_mesh_add_set(mesh, name, &set.nodes, &set.sides, &set.elements);
+        mesh->sets[mesh->n_sets - 1].n_strays = set.n_strays;
+        free(set.nodes.items);
+        free(set.sides.items);
+        free(set.elements.items);
+    }
+    table_clear(&table);
+}
+
+static void build_file(struct solid_mesh *mesh, const struct job_body *body)
+{
+    const struct job_volume *volume = &body->solid.volume;
+    struct choice choice;
+    choose(&choice, volume, body->group);
+    take_file(mesh, volume, &choice);
+    add_groups(mesh, volume, &choice);
+    free(choice.nodes);
+    free(choice.elements);
+}
+
+/* ------------------------------------------------------------------------------------ all */
+
+void solid_mesh_build(struct solid_mesh *mesh, const struct job_body *body)
+{
+    const struct job_solid *solid = &body->solid;
+    struct solid_mesh_side *surface;
+    *mesh = (struct solid_mesh){0};
+    if (solid->kind == JOB_MESH_GMSH)
+        build_file(mesh, body);
+    else
+        solid_shape_build(mesh, body);
+    geometry_place(body, mesh->n_nodes, mesh->nodes);
+    const int n = solid_mesh_surface(mesh, &surface);
+    if (solid_mesh_find(mesh, "all") == NULL)
+        add_all(mesh);
+    if (solid_mesh_find(mesh, "surface") == NULL)
+        add_surface(mesh, n, surface);
+    for (int k = 0; k < solid->n_sets; k++)
+        add_region(mesh, &solid->sets[k], n, surface);
+    free(surface);
+}
+
+void solid_mesh_clear(struct solid_mesh *mesh)
+{
+    for (int k = 0; k < mesh->n_sets; k++) {
+        free(mesh->sets[k].name);
+        free(mesh->sets[k].nodes);
+        free(mesh->sets[k].sides);
+        free(mesh->sets[k].elements);
+    }
+    free(mesh->sets);
+    free(mesh->nodes);
+    free(mesh->elements);
+    free(mesh->node_numbers);
+    free(mesh->element_numbers);
+    *mesh = (struct solid_mesh){0};
+}

@@ -1,0 +1,92 @@
+/*
+ * The mesh of a deformable solid at time 0: nodes, elements, and named sets of them.
+ *
+ * An element has eight nodes, a hexahedron, or four and then -1, a tetrahedron.  Of a
+ * hexahedron nodes 0 to 3 go round its bottom counter-clockwise as seen from its top, nodes 4
+ * to 7 lie above them; of a tetrahedron nodes 0, 1, 2 go round counter-clockwise as seen from
+ * node 3.  So both have positive volumes.  (Abaqus, LS-DYNA and Gmsh number them so too.)
+ *
+ * A hexahedron's sides are its bottom, its top, and those above the edges 0-1, 1-2, 2-3, 3-0
+ * of the bottom; a tetrahedron's that of the nodes 0, 1, 2 and those above its edges 0-1, 1-2,
+ * 2-0.
+ *
+ * Elements of a file keep its order, nodes come by number; whatever comes from here depends on
+ * the job alone.  Local, all of it.
+ */
+#ifndef TREMIE_MODEL_SOLID_MESH_H
+#define TREMIE_MODEL_SOLID_MESH_H
+
+#include <stdint.h>
+
+#include "base/vec3.h"
+
+struct job_body;
+
+enum { SOLID_MESH_SIDES = 6 }; /* that an element has room for */
+
+struct solid_mesh_side {
+    int element, side;
+};
+
+/* Each list ascends and has everything once. */
+struct solid_mesh_set {
+    char *name;
+    int n_nodes, n_sides, n_elements;
+    int *nodes;
+    struct solid_mesh_side *sides; /* on the surface */
+    int *elements;
+    int n_strays; /* facets of the file that are no such side */
+};
+
+struct solid_mesh {
+    int n_nodes, n_elements, n_sets;
+    struct vec3 *nodes; /* [m] */
+    int (*elements)[8];
+    int64_t *node_numbers, *element_numbers; /* what the file calls them; else from 1 */
+    struct solid_mesh_set *sets;
+};
+
+/* The body's mesh, placed, with all of its sets: those that come with a shape or a file, and
+ * those of the job.  It may have faults: see model/solid_quality.h. */
+void solid_mesh_build(struct solid_mesh *mesh, const struct job_body *body);
+void solid_mesh_clear(struct solid_mesh *mesh);
+
+/* NULL where there is none of this name. */
+const struct solid_mesh_set *solid_mesh_find(const struct solid_mesh *mesh, const char *name);
+
+static inline int solid_mesh_n_corners(const int element[8])
+{
+    return element[4] < 0 ? 4 : 8;
+}
+static inline int solid_mesh_n_sides(const int element[8])
+{
+    return element[4] < 0 ? 4 : 6;
+}
+/* The nodes of a side, counter-clockwise seen from outside; returns how many.  The fourth of
+ * three is -1. */
+int solid_mesh_side_nodes(const int element[8], int side, int nodes[4]);
+
+/* What lies behind side s of element e, at SOLID_MESH_SIDES * e + s: the number, counted so, of
+ * the side that it shares its nodes with; or one of these.  The caller frees it. */
+enum {
+    SOLID_MESH_OUTSIDE = -1, /* nothing: it is on the surface */
+    SOLID_MESH_SEVERAL = -2, /* sides of several elements: a fault */
+    SOLID_MESH_NO_SIDE = -3  /* a tetrahedron has but four */
+};
+int *solid_mesh_partners(const struct solid_mesh *mesh);
+/* The sides on the surface, ascending; returns how many.  The caller frees them. */
+int solid_mesh_surface(const struct solid_mesh *mesh, struct solid_mesh_side **sides);
+
+/* Adds a set, which must not be there: for what builds meshes.  `sides` are counted as above;
+ * lists need neither ascend nor have everything once. */
+struct solid_mesh_list {
+    int n, capacity;
+    int *items;
+};
+void solid_mesh_list_add(struct solid_mesh_list *list, int item);
+void solid_mesh_add_set(struct solid_mesh *mesh, const char *name,
+                        const struct solid_mesh_list *nodes,
+                        const struct solid_mesh_list *sides,
+                        const struct solid_mesh_list *elements);
+
+#endif

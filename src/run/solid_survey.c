@@ -1,0 +1,354 @@
+/*
+ * See solid_survey.h.  The critical step is that of a wave through the narrowest element, which
+ * no mesh of such elements falls below by much; contacts are not in it.
+ */
+#include "run/solid_survey.h"
+
+#include <math.h>
+#include <stdbool.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/report.h"
+#include "job/job.h"
+#include "job/schema.h"
+#include "model/gmsh.h"
+#include "model/solid_mesh.h"
+#include "model/solid_quality.h"
+#include "model/solid_shape.h"
+
+enum { PATH = 96, TEXT = 160 };
+
+/* ------------------------------------------------------------------------------- mistakes */
+
+struct survey {
+    const struct job *job;
+    const struct job_body *body;
+    const struct solid_mesh *mesh;
+    int b;
+    struct mistakes *mistakes;
+};
+
+/* Names of all sets, or of the file's physical volumes, in one line. */
+static void list_names(char *text, size_t size, const char *const *names, int n)
+{
+    size_t used = 0;
+    text[0] = '\0';
+    for (int k = 0; k < n && used < size; k++)
+        used += (size_t)snprintf(text + used, size - used, "%s%s", k > 0 ? ", " : "", names[k]);
+}
+
+/* Is the physical volume that the body names in its file? */
+static bool group_is_there(const struct job_body *body, struct mistakes *mistakes)
+{
+    const struct job_volume *volume = &body->solid.volume;
+    const char **names = array_allocate((size_t)volume->n_groups, sizeof *names);
+    char all[TEXT];
+    bool there = body->group == NULL;
+    int n = 0;
+    for (int g = 0; g < volume->n_groups; g++) {
+        if (volume->groups[g].dimension != 3)
+            continue;
+        names[n++] = volume->groups[g].name;
+        there = there || strcmp(names[n - 1], body->group) == 0;
+    }
+    list_names(all, sizeof all, names, n);
+    if (!there)
+        mistakes_add(mistakes, body->file, 0, 0,
+                     "there is no physical volume '%s'; %s%s is expected", body->group,
+                     n > 0 ? "one of " : "a file that has some", all);
+    free(names);
+    return there;
+}
+
+/* Lists at an item of the body. */
+#define FIND(survey, place, ...)                                                               \
+    mistakes_add((survey)->mistakes, (survey)->job->path, (place).line, (place).column,        \
+                 __VA_ARGS__)
+
+static void check_sets(const struct survey *survey)
+{
+    const struct job_solid *solid = &survey->body->solid;
+    const int n_own = survey->mesh->n_sets - solid->n_sets;
+    for (int k = 0; k < solid->n_sets; k++) {
+        const struct job_set *set = &solid->sets[k];
+        for (int j = 0; j < n_own; j++)
+            if (strcmp(survey->mesh->sets[j].name, set->name) == 0)
+                FIND(survey, set->place,
+                     "bodies.%d.sets.%d.name is '%s', which the mesh has; another name is "
+                     "expected",
+                     survey->b, k, set->name);
+        if (survey->mesh->sets[n_own + k].n_nodes == 0)
+            FIND(survey, set->place,
+                 "bodies.%d.sets.%d.region holds no node of body '%s'; one that does is "
+                 "expected",
+                 survey->b, k, survey->body->name);
+    }
+}
+
+/* There is no such set: which are there? */
+static void refuse_set(const struct survey *survey, int k)
+{
+    const struct solid_mesh *mesh = survey->mesh;
+    const struct job_boundary *asked = &survey->body->solid.boundary[k];
+    const char **names = array_allocate((size_t)mesh->n_sets, sizeof *names);
+    char all[TEXT];
+    for (int j = 0; j < mesh->n_sets; j++)
+        names[j] = mesh->sets[j].name;
+    const char *near = schema_suggestion(asked->set, names, mesh->n_sets);
+    list_names(all, sizeof all, names, mesh->n_sets);
+    FIND(survey, asked->place,
+         "bodies.%d.boundary.%d.set: there is no set '%s'; %s%s is expected", survey->b, k,
+         asked->set, near != NULL ? "" : "one of ", near != NULL ? near : all);
+    free(names);
+}
+
+/* A set that is there must hold what is asked of it. */
+static void check_set(const struct survey *survey, int k, const struct solid_mesh_set *set)
+{
+    const struct job_boundary *asked = &survey->body->solid.boundary[k];
+    const bool presses = asked->has_pressure || asked->n_pressures > 0;
+    if (set->n_nodes == 0)
+        FIND(survey, asked->place,
+             "bodies.%d.boundary.%d.set: set '%s' has no nodes; some are "
+             "expected",
+             survey->b, k, set->name);
+    else if (presses && set->n_sides == 0)
+        FIND(survey, asked->place,
+             "bodies.%d.boundary.%d.set: set '%s' has no sides on the surface that a pressure "
+             "could act on; some are expected",
+             survey->b, k, set->name);
+    else if (presses && set->n_strays > 0)
+        FIND(survey, asked->place,
+             "bodies.%d.boundary.%d.set: %d facets of set '%s' are no sides of elements on the "
+             "surface; a pressure on the surface is expected",
+             survey->b, k, set->n_strays, set->name);
+}
+
+/* Directions in which an item prescribes motion, a set of enum job_direction. */
+static int directions_of(const struct job_boundary *asked)
+{
+    const bool moves =
+        asked->n_displacements > 0 || asked->has_velocity || asked->n_velocities > 0;
+    return moves ? 1 << asked->direction : asked->fixed;
+}
+
+/* A node may be held twice but not moved in two ways. */
+static void check_conflicts(const struct survey *survey)
+{
+    const struct solid_mesh *mesh = survey->mesh;
+    const struct job_solid *solid = &survey->body->solid;
+    int(*holders)[3] = array_allocate((size_t)mesh->n_nodes, sizeof *holders); /* item + 1 */
+    for (int k = 0; k < solid->n_boundary; k++) {
+        const struct job_boundary *asked = &solid->boundary[k];
+        const struct solid_mesh_set *set = solid_mesh_find(mesh, asked->set);
+        const int directions = directions_of(asked);
+        bool told = false;
+        for (int j = 0; set != NULL && j < set->n_nodes; j++) {
+            for (int d = 0; d < 3; d++) {
+                int *holder = &holders[set->nodes[j]][d];
+                if ((directions & 1 << d) == 0)
+                    continue;
+                const bool both_fixed =
+                    *holder > 0 && asked->fixed != 0 && solid->boundary[*holder - 1].fixed != 0;
+                if (*holder > 0 && !both_fixed && !told)
+                    FIND(survey, asked->place,
+                         "bodies.%d.boundary.%d moves node %lld along %c, which "
+                         "bodies.%d.boundary.%d does too; one of them is expected",
+                         survey->b, k, solid_quality_node_number(mesh, set->nodes[j]), "xyz"[d],
+                         survey -> b, *holder - 1);
+                told = told || (*holder > 0 && !both_fixed);
+                *holder = k + 1;
+            }
+        }
+    }
+    free(holders);
+}
+
+static void check_body(const struct job *job, int b, struct mistakes *mistakes)
+{
+    const struct job_body *body = &job->bodies[b];
+    const struct job_solid *solid = &body->solid;
+    const bool file = solid->kind == JOB_MESH_GMSH;
+    const struct job_place nowhere = {0, 0};
+    struct solid_mesh mesh;
+    if (file ? !group_is_there(body, mistakes)
+             : solid_shape_n_elements(body) > (double)GMSH_ELEMENTS_MOST) {
+        if (!file)
+            mistakes_add(mistakes, job->path, body->place.line, body->place.column,
+                         "bodies.%d.mesh makes %.3g elements; at most %d are expected", b,
+                         solid_shape_n_elements(body), GMSH_ELEMENTS_MOST);
+        return;
+    }
+    solid_mesh_build(&mesh, body);
+    const struct survey survey = {job, body, &mesh, b, mistakes};
+    solid_quality_check(&mesh, body->name, file ? body->file : job->path,
+                        file ? nowhere : body->place, mistakes);
+    check_sets(&survey);
+    for (int k = 0; k < solid->n_boundary; k++) {
+        const struct solid_mesh_set *set = solid_mesh_find(&mesh, solid->boundary[k].set);
+        if (set == NULL)
+            refuse_set(&survey, k);
+        else
+            check_set(&survey, k, set);
+    }
+    check_conflicts(&survey);
+    solid_mesh_clear(&mesh);
+}
+
+void solid_survey_check(const struct job *job, struct mistakes *mistakes)
+{
+    for (int b = 0; b < job->n_bodies; b++)
+        if (job->bodies[b].model == JOB_MODEL_SOLID)
+            check_body(job, b, mistakes);
+}
+
+/* ------------------------------------------------------------------------ tremie check */
+
+/* Speed of waves of compression in a large solid [m/s]. */
+static double wave_speed(const struct job_material *material)
+{
+    const double nu = material->poisson;
+    return sqrt(material->young * (1.0 - nu) /
+                (material->density * (1.0 + nu) * (1.0 - 2.0 * nu)));
+}
+
+/* What an element of this width allows, with damping taken at the half step [s]. */
+static double step_of(const struct job *job, const struct job_body *body, double width)
+{
+    const double omega = 2.0 * wave_speed(&job->materials[body->material]) / width;
+    const double damped = 0.5 * (body->solid.damping.mass / omega +
+                                 body->solid.damping.stiffness * omega); /* of critical [-] */
+    return 2.0 / omega * (sqrt(1.0 + damped * damped) - damped);
+}
+
+/* "element 12 at (0.1, 0.2, 0.3) m" */
+static const char *element_name(const struct solid_mesh *mesh, int e, char text[TEXT])
+{
+    const struct vec3 x = solid_quality_centre(mesh, e);
+    snprintf(text, TEXT, "element %lld at (%.4g, %.4g, %.4g) m",
+             solid_quality_element_number(mesh, e), x.x, x.y, x.z);
+    return text;
+}
+
+static void print_sets(const struct solid_mesh *mesh)
+{
+    for (int k = 0; k < mesh->n_sets; k++) {
+        const struct solid_mesh_set *set = &mesh->sets[k];
+        report_say("          set %s: %d nodes, %d sides, %d elements", set->name, set->n_nodes,
+                   set->n_sides, set->n_elements);
+    }
+}
+
+static void print_cost(const struct job *job, const struct solid_quality *quality, int n_nodes)
+{
+    enum { NANOSECONDS = 200, BYTES_AN_ELEMENT = 500, BYTES_A_NODE = 300 };
+    const double n = (double)quality->n_hexahedra + (double)quality->n_tetrahedra;
+    const double steps = n * (job->time.end / job->time.step);
+    report_say(
+        "          %.3g element-steps: of the order of %.3g s on one rank; memory of the "
+        "order of %.3g MB",
+        steps, steps * NANOSECONDS * 1e-9,
+        (n * BYTES_AN_ELEMENT + (double)n_nodes * BYTES_A_NODE) * 1e-6);
+}
+
+void solid_survey_print(const struct job *job, int b)
+{
+    const struct job_body *body = &job->bodies[b];
+    const struct job_material *material = &job->materials[body->material];
+    struct solid_mesh mesh;
+    char aspect[TEXT], jacobian[TEXT], width[TEXT];
+    solid_mesh_build(&mesh, body);
+    const struct solid_quality q = solid_quality_of(&mesh);
+    const double step = step_of(job, body, q.width);
+    report_say("body      %s: solid, %s, %d hexahedra, %d tetrahedra, %d nodes, mass %.6g kg",
+               body->name, material->name, q.n_hexahedra, q.n_tetrahedra, mesh.n_nodes,
+               q.volume * material->density);
+    report_say("          x %.4g .. %.4g, y %.4g .. %.4g, z %.4g .. %.4g m", q.low.x, q.high.x,
+               q.low.y, q.high.y, q.low.z, q.high.z);
+    report_say("          volume %.6g m3, surface %.4g m2 in %d sides", q.volume, q.area,
+               q.n_sides);
+    report_say("          longest over shortest edge up to %.3g, of %s", q.aspect,
+               element_name(&mesh, q.aspect_worst, aspect));
+    report_say("          scaled Jacobian %.3g in the mean, least %.3g, of %s", q.jacobian_mean,
+               q.jacobian_least, element_name(&mesh, q.jacobian_worst, jacobian));
+    report_say(
+        "          waves run at %.4g m/s, through %.4g m of %s: critical step about %.3g "
+        "s without contacts, the step is %.3g of it",
+        wave_speed(material), q.width, element_name(&mesh, q.width_worst, width), step,
+        job->time.step / step);
+    print_sets(&mesh);
+    print_cost(job, &q, mesh.n_nodes);
+    solid_mesh_clear(&mesh);
+}
+
+/* Limits beyond which no usual material lies: probably other units. */
+static void warn_of_material(const struct job *job, const struct job_body *body)
+{
+    static const double DENSITY[2] = {5.0, 25000.0}; /* [kg/m3] foam, osmium */
+    static const double SPEED[2] = {1.0, 25000.0};   /* [m/s] jelly, diamond */
+    const struct job_material *material = &job->materials[body->material];
+    const double speed = wave_speed(material);
+    if (!(material->density >= DENSITY[0] && material->density <= DENSITY[1]))
+        report_warn("body '%s': %s has a density of %.3g kg/m3, as no solid has; is its unit "
+                    "right?",
+                    body->name, material->name, material->density);
+    if (!(speed >= SPEED[0] && speed <= SPEED[1]))
+        report_warn(
+            "body '%s': waves would run at %.3g m/s in %s, as in no solid; are the units "
+            "of density and young right?",
+            body->name, speed, material->name);
+    if (material->yield > 0.1 * material->young)
+        report_warn("body '%s': %s yields at %.3g Pa, more than a tenth of young; are their "
+                    "units right?",
+                    body->name, material->name, material->yield);
+}
+
+/* A one-point hexahedron feels no bending: layers of them do. */
+static void warn_of_layers(const struct job_body *body)
+{
+    enum { LAYERS = 3 };
+    double cells[3];
+    const struct job_solid *solid = &body->solid;
+    if (solid->kind != JOB_MESH_PLATE || solid->elements != JOB_ELEMENTS_HEXAHEDRA)
+        return;
+    solid_shape_cells(body, cells);
+    if (cells[2] < LAYERS)
+        report_warn("body '%s': %.0f cell%s through the thickness: hourglass control bears the "
+                    "bending; %d or more are better",
+                    body->name, cells[2], cells[2] == 1.0 ? "" : "s", LAYERS);
+}
+
+void solid_survey_warn(const struct job *job, int b)
+{
+    static const double JACOBIAN = 0.1, ASPECT = 20.0;
+    const struct job_body *body = &job->bodies[b];
+    struct solid_mesh mesh;
+    char name[TEXT];
+    solid_mesh_build(&mesh, body);
+    const struct solid_quality q = solid_quality_of(&mesh);
+    const double step = step_of(job, body, q.width);
+    warn_of_material(job, body);
+    warn_of_layers(body);
+    if (job->time.step > step)
+        report_warn("body '%s': time.step is %.3g of the critical step of %s; it would be "
+                    "unstable",
+                    body->name, job->time.step / step,
+                    element_name(&mesh, q.width_worst, name));
+    if (q.jacobian_least < JACOBIAN)
+        report_warn(
+            "body '%s': %s is nearly folded or flat, its scaled Jacobian is %.2g; above "
+            "%.1f is better",
+            body->name, element_name(&mesh, q.jacobian_worst, name), q.jacobian_least,
+            JACOBIAN);
+    if (q.aspect > ASPECT)
+        report_warn(
+            "body '%s': the edges of %s differ by a factor of %.3g; below %.0f is better",
+            body->name, element_name(&mesh, q.aspect_worst, name), q.aspect, ASPECT);
+    if (q.n_parts > 1)
+        report_warn("body '%s': its mesh falls into %d parts that have no node in common",
+                    body->name, q.n_parts);
+    solid_mesh_clear(&mesh);
+}

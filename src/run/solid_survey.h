@@ -1,0 +1,19 @@
+/*
+ * What can be known of deformable bodies before a run: mistakes in their meshes and in what is
+ * prescribed on them, how good the meshes are, what they allow of the step.
+ */
+#ifndef TREMIE_RUN_SOLID_SURVEY_H
+#define TREMIE_RUN_SOLID_SURVEY_H
+
+struct job;
+struct mistakes;
+
+/* Lists what is wrong with meshes, sets and boundaries; files have been read.  Local. */
+void solid_survey_check(const struct job *job, struct mistakes *mistakes);
+/* A few lines for body b, which is a solid.  Local. */
+void solid_survey_print(const struct job *job, int b);
+/* Warns of what is allowed and probably not meant: of its elements, its material, the step.
+ * Local. */
+void solid_survey_warn(const struct job *job, int b);
+
+#endif
