@@ -5,6 +5,7 @@
  * A checkpoint is read completely, which verifies all its checksums; so are the checkpoints of
  * a run.  Series carry the checksums of HDF5, which reading verifies as well.
  */
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -362,8 +363,10 @@ static int show_checkpoints(const struct comm *comm, const char *run)
     char *folder = array_format("%s/checkpoints", run);
     int64_t *steps;
     const int n = file_steps(folder, &steps);
-    int worst = REPORT_FINISHED;
-    printf("checkpoints         %d\n", n);
+    int worst = n < 0 ? REPORT_STORAGE : REPORT_FINISHED;
+    if (n < 0)
+        report_error("cannot read %s: %s", folder, strerror(errno));
+    printf("checkpoints         %d\n", n < 0 ? 0 : n);
     for (int i = 0; i < n; i++) {
         char *path = file_step_path(folder, steps[i]);
         struct stat entry = {0};

@@ -65,7 +65,7 @@ static char *text_as_used(const struct job *job, const struct options *options, 
         folder.path = options->out != NULL ? array_string(options->out)
                                            : array_format("runs/%s", job->name);
         char *path = array_format("%s/job.yaml", folder.path);
-        *has_state = run_folder_checkpoints(&folder, &steps) > 0;
+        *has_state = run_folder_checkpoints(&folder, &steps) != 0;
         why = file_read(path, INT_MAX, &text);
         free(path);
     }
