@@ -443,10 +443,10 @@ int main(int argc, char **argv)
                      argv[1]);
         return REPORT_BAD_INPUT;
     }
-    MPI_Init(NULL, NULL);
+    COMM_CHECK(MPI_Init(NULL, NULL));
     const struct comm comm = comm_world();
     status = S_ISDIR(entry.st_mode) ? show_run(&comm, argv[1], csv)
                                     : show_file(&comm, argv[1], listed);
-    MPI_Finalize();
+    COMM_CHECK(MPI_Finalize());
     return status;
 }

@@ -4,6 +4,7 @@
  */
 #include "base/report.h"
 
+#include <errno.h>
 #include <mpi.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -29,7 +30,8 @@ bool report_log_open(const char *path)
     report_log_close();
     report_log = fopen(path, "a");
     if (report_log == NULL) {
-        report_error("cannot open the log %s; check that the folder can be written to", path);
+        report_error("cannot open the log %s: %s; check that the folder can be written to",
+                     path, strerror(errno));
         return false;
     }
     setvbuf(report_log, NULL, _IOLBF, 0);

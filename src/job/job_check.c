@@ -241,7 +241,7 @@ static void region_check(const struct check *check, const char *path,
 {
     const struct job *job = check->job;
     const struct vec3 along = vec3_sub(region->to, region->from);
-    bool found = false;
+    bool found = region->body == NULL; /* that was told */
     if (region->kind == JOB_REGION_BOX &&
         !(region->min.x < region->max.x && region->min.y < region->max.y &&
           region->min.z < region->max.z))
@@ -251,7 +251,8 @@ static void region_check(const struct check *check, const char *path,
     if (region->kind == JOB_REGION_CYLINDER && !(vec3_norm(along) > 0.0))
         mistake(check, path, "has an axis without length; two different ends are expected");
     for (int b = 0; region->kind == JOB_REGION_INSIDE && b < job->n_bodies; b++)
-        found = found || strcmp(job->bodies[b].name, region->body) == 0;
+        found = found ||
+                (job->bodies[b].name != NULL && strcmp(job->bodies[b].name, region->body) == 0);
     if (region->kind == JOB_REGION_INSIDE && !found)
         mistake(check, path, "names '%s', which is no body; the name of a body is expected",
                 region->body);
