@@ -144,8 +144,8 @@ void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
     sections_begin(&sim->sections, spheres, i);
 }
 
-/* Is there room in memory for so many spheres of this rank?  Said before any is taken: more than
- * there is would be given, and the process be killed when it uses it.  Collective. */
+/* Is there room in memory for so many spheres of this rank?  Said before any is taken: more
+ * than there is would be given, and the process be killed when it uses it.  Collective. */
 static int check_memory(const struct simulation *sim, int64_t n_here)
 {
     static const double LEAST = 0.15; /* of SIMULATION_BYTES_A_SPHERE: rows and nothing else */

@@ -55,9 +55,9 @@ void run_folder_prune(const struct run_folder *folder, int keep);
  * RUN/set_aside_N/ (said). */
 int run_folder_rewind(const struct run_folder *folder, int64_t step);
 /* Replaces a file of the folder by these bytes, forced to the disk.  False: not; *why is the
- * machine's reason (the caller frees it) or, when the folder is another's now, which was said,
- * NULL.  An owner that is stopped here and awakes when it is robbed replaces nothing: the new one
- * has cleared away what was to get the name. */
+ * machine's reason (the caller frees it) or, when the folder is another's now, which was
+ * said, NULL.  An owner that is stopped here and awakes when it is robbed replaces nothing:
+ * the new one has cleared away what was to get the name. */
 bool run_folder_replace(const struct run_folder *folder, const char *path, const void *bytes,
                         size_t n, char **why);
 /* Replaces RUN/status with this text (temporary name, rename). */

@@ -1,17 +1,18 @@
 /*
  * Faults, loaded before the C library (LD_PRELOAD): the n-th call of a process that touches the
  * run's folder, or the n-th look at the clock of its program, does what FAULT says.  Counting
- * calls instead of waiting puts a fault really inside a checkpoint's write, and there again when
- * the same seed is given.
+ * calls instead of waiting puts a fault really inside a checkpoint's write, and there again
+ * when the same seed is given.
  *
  *   FAULT=WHAT:ON:N:RANK  WHAT: kill (this process), kill_all (all ranks), kill_mpirun, stop
- *                         (SIGSTOP), short (half is written), fail=ERROR (that call), break=ERROR
- *                         (all calls from then on), jump=SECONDS (clocks, as if somebody had set
- *                         them; forwards also those that are never set: the machine has slept)
+ *                         (SIGSTOP), short (half is written), fail=ERROR (that call),
+ *                         break=ERROR (all calls from then on), jump=SECONDS (clocks, as if
+ *                         somebody had set them; forwards also those that are never set: the
+ *                         machine has slept)
  *                         ON: write (calls that change files), read, tick (the clock)
  *   FAULT_FOLDER=PATH     the run's folder
- *   FAULT_NOTES=FILE      gets a line for the strike, for each checkpoint that has got its name,
- *                         and at the end for the numbers of calls
+ *   FAULT_NOTES=FILE      gets a line for the strike, for each checkpoint that has got its
+ *                         name, and at the end for the numbers of calls
  *
  * Calls of the main thread alone are counted: the lock's heart beats by the clock.
  */

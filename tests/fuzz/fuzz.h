@@ -1,6 +1,6 @@
 /*
- * What both fuzzers share.  A message of a bug in tremie is a finding: CHECK() aborts here, which
- * the fuzzer notes (the linker puts __wrap_report_bug in its place, and so for memory and
+ * What both fuzzers share.  A message of a bug in tremie is a finding: CHECK() aborts here,
+ * which the fuzzer notes (the linker puts __wrap_report_bug in its place, and so for memory and
  * checksums).
  */
 #ifndef TREMIE_TESTS_FUZZ_H

@@ -1,8 +1,8 @@
 /*
- * The reader of checkpoints, fed with a good one to which something was done: an input is a list
- * of edits of 12 bytes each.  Edits act on what the file means (through HDF5: numbers, lengths,
- * types, whole objects) or on its bytes.  Our checksums are turned off, as the linker puts a
- * constant in their place, also when the good one is made, so that edits get past them.
+ * The reader of checkpoints, fed with a good one to which something was done: an input is a
+ * list of edits of 12 bytes each.  Edits act on what the file means (through HDF5: numbers,
+ * lengths, types, whole objects) or on its bytes.  Our checksums are turned off, as the linker
+ * puts a constant in their place, also when the good one is made, so that edits get past them.
  */
 #include <hdf5.h>
 #include <mpi.h>
