@@ -105,8 +105,9 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     watch_init(&sim->watch, job);
 }
 
-/* Spheres are here in some order: complete them, choose kernels, distribute and search. */
-static void finish(struct simulation *sim, enum isa isa)
+/* Spheres are here in some order: complete them, choose kernels, distribute and search.  `from`
+ * is the file that they come from, if any.  Returns a REPORT_ status, the reason said. */
+static int finish(struct simulation *sim, enum isa isa, const char *from)
 {
     for (int i = 0; i < sim->spheres.n_owned; i++)
         sphere_complete(&sim->spheres, i, &sim->materials);
@@ -118,9 +119,14 @@ static void finish(struct simulation *sim, enum isa isa)
     sim->half_buffer = choose_half_buffer(sim);
     runtime_init(&sim->runtime, sim->step);
     bodies_place(&sim->bodies, sim->step, sim->dt);
-    redistribute_first(sim);
+    const bool fits = redistribute_first(sim);
     watch_bodies(&sim->watch, sim);
     runtime_begin(&sim->runtime);
+    if (fits)
+        return REPORT_FINISHED;
+    report_error("cannot use the checkpoint %s: it has contacts of spheres that are far apart",
+                 from);
+    return REPORT_STORAGE;
 }
 
 void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
@@ -227,9 +233,12 @@ int simulation_create(struct simulation *sim, const struct comm *comm, const str
     }
     sim->spheres.n_all = sim->spheres.n_owned;
     order_renew(&sim->spheres, comm);
-    finish(sim, isa);
-    observe_taken_over(sim);
-    return REPORT_FINISHED;
+    status = finish(sim, isa, job->start.given ? job->start.from : "");
+    if (status == REPORT_FINISHED)
+        observe_taken_over(sim);
+    else
+        simulation_destroy(sim);
+    return status;
 }
 
 /* Totals from the file: rank 0 holds them, the others hold nothing yet. */
@@ -306,8 +315,10 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
     checkpoint.contacts = NULL;
     checkpoint.facet_contacts = NULL;
     checkpoint_clear(&checkpoint);
-    finish(sim, isa);
-    return REPORT_FINISHED;
+    status = finish(sim, isa, checkpoint_path);
+    if (status != REPORT_FINISHED)
+        simulation_destroy(sim);
+    return status;
 }
 
 void simulation_destroy(struct simulation *sim)
