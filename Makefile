@@ -65,16 +65,21 @@ limit_shared := $(patsubst %.c,$(BUILD)/%.o,\
     $(filter-out $(limit_sources),$(sort $(wildcard tests/stability/*.c))))
 stability_cases := $(patsubst tests/stability/%.c,$(BUILD)/tests/%,$(limit_sources))
 
+# Programs that clang's fuzzer drives, in a flavour of their own (tests/fuzz/run).
+fuzz_objects := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard tests/fuzz/*.c)))
+fuzzers := $(BUILD)/fuzz_job $(BUILD)/fuzz_checkpoint
+
 flavour_objects := $(flavour_sources:%.c=$(BUILD)/%.o)
 rules := Makefile $(wildcard config/compiler/*.mk)
 
 all_objects := $(library_objects) $(kernel_objects) $(main:%.c=$(BUILD)/%.o) $(tool_shared) \
     $(tool_sources:%.c=$(BUILD)/%.o) $(unit_sources:%.c=$(BUILD)/%.o) $(case_sources:%.c=$(BUILD)/%.o) \
-    $(case_shared) $(limit_sources:%.c=$(BUILD)/%.o) $(limit_shared) $(chart_objects) $(flavour_objects)
+    $(case_shared) $(limit_sources:%.c=$(BUILD)/%.o) $(limit_shared) $(chart_objects) $(fuzz_objects) \
+    $(flavour_objects)
 
 # --------------------------------------------------------------------------------------------- goals
 
-.PHONY: all hopper test verify stability bench bench-peers charts-quick lint help install clean unit_tests \
+.PHONY: all hopper test soak fuzzers verify stability bench bench-peers charts-quick lint help install clean unit_tests \
     verification_cases stability_cases
 .DEFAULT_GOAL := all
 
@@ -93,6 +98,14 @@ test:
 	@$(MAKE) --no-print-directory all unit_tests verification_cases stability_cases
 	@BUILD='$(BUILD)' BIN='$(BIN)' FLAVOUR='$(FLAVOUR)' CC='$(CC)' CPPFLAGS='$(CPPFLAGS)' \
 	    tests/run $(FILTER)
+
+##  make soak         faults and fuzzing for half an hour or so (FAULTS=300 FUZZ=180 SEED=number; FUZZ in seconds)
+soak:
+	@config/setup test soak
+	@$(MAKE) --no-print-directory all
+	@BIN='$(BIN)' CC='$(CC)' FAULTS='$(FAULTS)' FUZZ='$(FUZZ)' SEED='$(SEED)' tests/soak
+
+fuzzers: $(fuzzers)
 
 ##  make verify       compare with theory and publications; writes tests/verification/README.md
 verify:
@@ -162,7 +175,7 @@ stability_cases: $(stability_cases)
 
 $(library_objects) $(tool_shared) $(main:%.c=$(BUILD)/%.o) $(tool_sources:%.c=$(BUILD)/%.o) \
 $(unit_sources:%.c=$(BUILD)/%.o) $(case_sources:%.c=$(BUILD)/%.o) $(case_shared) \
-$(limit_sources:%.c=$(BUILD)/%.o) $(limit_shared) $(chart_objects): \
+$(limit_sources:%.c=$(BUILD)/%.o) $(limit_shared) $(chart_objects) $(fuzz_objects): \
 $(BUILD)/%.o: %.c $(rules)
 	@mkdir -p $(@D)
 	$(call say,compile,$<)$(CC) $(CPPFLAGS) $(CFLAGS) $(march) -MMD -MP -c -o $@ $<
@@ -215,5 +228,11 @@ $(stability_cases): $(BUILD)/tests/%: $(BUILD)/tests/stability/%.o $(limit_share
     $(case_shared) $(flavour_objects) $(library)
 	@mkdir -p $(@D)
 	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(library) $(LDLIBS)
+
+# A bug that the program reports of itself is a finding; edits of checkpoints get past our checksums.
+fuzz_wraps = -Wl,--wrap=report_bug,--wrap=report_no_memory$(if $(findstring checkpoint,$@),$(comma)--wrap=crc32_of)
+comma := ,
+$(fuzzers): $(BUILD)/fuzz_%: $(BUILD)/tests/fuzz/fuzz_%.o $(BUILD)/tests/fuzz/fuzz.o $(library)
+	$(call say,link,$@)$(CC) $(CFLAGS) -fsanitize=fuzzer $(fuzz_wraps) -o $@ $^ $(LDLIBS)
 
 -include $(all_objects:.o=.d)

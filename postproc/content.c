@@ -69,7 +69,7 @@ static herr_t visit_attribute(hid_t object, const char *name, const H5A_info_t *
     const struct walk *walk = data;
     const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
     if (attribute < 0)
-        return 0;
+        return -1;
     const hid_t type = H5Aget_type(attribute), space = H5Aget_space(attribute);
     add_item(walk->content, array_format("%s@%s", walk->path, name), type, space);
     H5Sclose(space);
@@ -82,15 +82,16 @@ static herr_t visit_object(hid_t file, const char *name, const H5O_info_t *info,
 {
     struct content *content = data;
     char *path = strcmp(name, ".") == 0 ? array_string("/") : array_format("/%s", name);
+    herr_t status = 0;
     if (info->type == H5O_TYPE_DATASET) {
         add_set(content, path);
     } else if (info->type == H5O_TYPE_GROUP) {
         struct walk walk = {content, path};
-        H5Aiterate_by_name(file, name, H5_INDEX_NAME, H5_ITER_INC, NULL, visit_attribute, &walk,
-                           H5P_DEFAULT);
+        status = H5Aiterate_by_name(file, name, H5_INDEX_NAME, H5_ITER_INC, NULL,
+                                    visit_attribute, &walk, H5P_DEFAULT);
     }
     free(path);
-    return 0;
+    return status;
 }
 
 static int compare_paths(const void *a, const void *b)

@@ -5,6 +5,7 @@
  * A checkpoint is read completely, which verifies all its checksums; so are the checkpoints of
  * a run.  Series carry the checksums of HDF5, which reading verifies as well.
  */
+#include <errno.h>
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -359,8 +360,10 @@ static int show_checkpoints(const struct comm *comm, const char *run)
     char *folder = array_format("%s/checkpoints", run);
     int64_t *steps;
     const int n = file_steps(folder, &steps);
-    int worst = REPORT_FINISHED;
-    printf("checkpoints         %d\n", n);
+    int worst = n < 0 ? REPORT_STORAGE : REPORT_FINISHED;
+    if (n < 0)
+        report_error("cannot read %s: %s", folder, strerror(errno));
+    printf("checkpoints         %d\n", n < 0 ? 0 : n);
     for (int i = 0; i < n; i++) {
         char *path = file_step_path(folder, steps[i]);
         struct stat entry = {0};
@@ -437,10 +440,10 @@ int main(int argc, char **argv)
                      argv[1]);
         return REPORT_BAD_INPUT;
     }
-    MPI_Init(NULL, NULL);
+    COMM_CHECK(MPI_Init(NULL, NULL));
     const struct comm comm = comm_world();
     status = S_ISDIR(entry.st_mode) ? show_run(&comm, argv[1], csv)
                                     : show_file(&comm, argv[1], listed);
-    MPI_Finalize();
+    COMM_CHECK(MPI_Finalize());
     return status;
 }

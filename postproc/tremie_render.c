@@ -473,7 +473,7 @@ static int show_like(const struct comm *comm, const struct subject *subject,
 
 static int show(struct wishes *wishes)
 {
-    MPI_Init(NULL, NULL);
+    COMM_CHECK(MPI_Init(NULL, NULL));
     const struct comm comm = comm_world();
     struct subject subject;
     int status = subject_read(&subject, &comm, wishes->path, wishes);
@@ -482,7 +482,7 @@ static int show(struct wishes *wishes)
                                       : render(&subject, &subject, wishes);
         subject_clear(&subject);
     }
-    MPI_Finalize();
+    COMM_CHECK(MPI_Finalize());
     return status;
 }
 

@@ -22,7 +22,8 @@ static size_t checked_bytes(size_t n, size_t size)
 void *array_allocate(size_t n, size_t size)
 {
     void *memory = calloc(n > 0 ? n : 1, size > 0 ? size : 1);
-    CHECK(memory != NULL, "out of memory: %zu bytes asked for", checked_bytes(n, size));
+    if (memory == NULL)
+        report_no_memory(checked_bytes(n, size));
     return memory;
 }
 
@@ -32,7 +33,8 @@ void *array_allocate_rows(size_t n, size_t size)
     void *memory = NULL;
     const int error = posix_memalign(&memory, bytes >= HUGE_PAGE ? HUGE_PAGE : CACHE_LINE,
                                      bytes > 0 ? bytes : CACHE_LINE);
-    CHECK(error == 0, "out of memory: %zu bytes asked for", bytes);
+    if (error != 0)
+        report_no_memory(bytes);
     /* Only what fills huge pages: another one for the rest would be mostly empty. */
     if (bytes >= HUGE_PAGE)
         (void)madvise(memory, bytes / HUGE_PAGE * HUGE_PAGE, MADV_HUGEPAGE); /* it may fail */
@@ -44,7 +46,8 @@ void *array_resize(void *old, size_t n_old, size_t n, size_t size)
 {
     const size_t bytes = checked_bytes(n, size);
     char *memory = realloc(old, bytes > 0 ? bytes : 1);
-    CHECK(memory != NULL, "out of memory: %zu bytes asked for", bytes);
+    if (memory == NULL)
+        report_no_memory(bytes);
     if (n > n_old)
         memset(memory + n_old * size, 0, (n - n_old) * size);
     return memory;

@@ -27,6 +27,16 @@ struct comm comm_world(void)
     return comm;
 }
 
+int comm_ranks_here(const struct comm *comm)
+{
+    MPI_Comm here;
+    int n = 1;
+    COMM_CHECK(MPI_Comm_split_type(comm->mpi, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &here));
+    COMM_CHECK(MPI_Comm_size(here, &n));
+    COMM_CHECK(MPI_Comm_free(&here));
+    return n;
+}
+
 static void reduce(const struct comm *comm, void *values, int n, MPI_Datatype type, MPI_Op op)
 {
     if (comm->n_ranks > 1)

@@ -23,6 +23,9 @@ void comm_check(int status, const char *call);
 /* MPI_COMM_WORLD with errors returned.  Collective. */
 struct comm comm_world(void);
 
+/* Ranks on the machine of this one, itself included.  Collective. */
+int comm_ranks_here(const struct comm *comm);
+
 /* In-place reductions of n values.  Collective. */
 void comm_max(const struct comm *comm, double *values, int n);
 void comm_min(const struct comm *comm, double *values, int n);

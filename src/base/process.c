@@ -5,6 +5,7 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/resource.h>
 #include <time.h>
 #include <unistd.h>
 
@@ -35,6 +36,15 @@ double process_age(int64_t id)
     if (ticks <= 0 || !process_lives(id, &started) || clock_gettime(CLOCK_BOOTTIME, &now) != 0)
         return -1.0;
     return (double)now.tv_sec + 1e-9 * (double)now.tv_nsec - (double)started / (double)ticks;
+}
+
+double process_memory(void)
+{
+    struct rlimit limit;
+    const double machine = (double)sysconf(_SC_PHYS_PAGES) * (double)sysconf(_SC_PAGESIZE);
+    if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
+        return machine;
+    return (double)limit.rlim_cur < machine ? (double)limit.rlim_cur : machine;
 }
 
 void process_job(char *text, size_t size)

@@ -14,6 +14,9 @@ bool process_lives(int64_t id, int64_t *started);
 /* Seconds since a process started; negative where that cannot be known. */
 double process_age(int64_t id);
 
+/* Memory that processes of this machine can have, or this one is allowed to [bytes]. */
+double process_memory(void);
+
 /* What a scheduler calls the job that this process belongs to, like "slurm 4711"; "" without
  * one. */
 void process_job(char *text, size_t size);

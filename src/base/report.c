@@ -4,6 +4,7 @@
  */
 #include "base/report.h"
 
+#include <errno.h>
 #include <mpi.h>
 #include <stdarg.h>
 #include <stdlib.h>
@@ -29,7 +30,8 @@ bool report_log_open(const char *path)
     report_log_close();
     report_log = fopen(path, "a");
     if (report_log == NULL) {
-        report_error("cannot open the log %s; check that the folder can be written to", path);
+        report_error("cannot open the log %s: %s; check that the folder can be written to",
+                     path, strerror(errno));
         return false;
     }
     setvbuf(report_log, NULL, _IOLBF, 0);
@@ -137,23 +139,45 @@ void report_progress(bool keep, const char *format, ...)
     va_end(arguments);
 }
 
-void report_bug(const char *file, int line, const char *condition, const char *format, ...)
+/* MPI's rank, as far as there is one, and the end of all of them. */
+static int own_rank(void)
 {
     int initialized = 0, finalized = 0, rank = 0;
     MPI_Initialized(&initialized);
     MPI_Finalized(&finalized);
-    if (initialized && !finalized)
-        MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    if (!initialized || finalized)
+        return -1;
+    MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+    return rank;
+}
+
+static _Noreturn void stop_all(int status)
+{
+    fflush(NULL);
+    if (own_rank() >= 0)
+        MPI_Abort(MPI_COMM_WORLD, status);
+    _exit(status);
+}
+
+void report_bug(const char *file, int line, const char *condition, const char *format, ...)
+{
+    const int rank = own_rank();
     va_list arguments;
     va_start(arguments, format);
-    fprintf(stderr, "error: %s:%d: rank %d: ", file, line, rank);
+    fprintf(stderr, "error: %s:%d: rank %d: ", file, line, rank > 0 ? rank : 0);
     vfprintf(stderr, format, arguments);
     fprintf(stderr, " (%s is false); this is a bug in tremie, please report it\n", condition);
     va_end(arguments);
-    fflush(NULL);
-    if (initialized && !finalized)
-        MPI_Abort(MPI_COMM_WORLD, REPORT_BUG);
-    _exit(REPORT_BUG);
+    stop_all(REPORT_BUG);
+}
+
+void report_no_memory(size_t bytes)
+{
+    fprintf(stderr,
+            "error: out of memory: %zu bytes more were asked for; use a smaller job, more "
+            "machines, or a greater limit of memory\n",
+            bytes);
+    stop_all(REPORT_STORAGE);
 }
 
 /* ---------------------------------------------------------------------- the user's mistakes */

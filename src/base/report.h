@@ -14,6 +14,7 @@
 #define TREMIE_BASE_REPORT_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdio.h>
 
 /* Exit statuses of `tremie` (documented in README.md). */
@@ -49,6 +50,10 @@ void report_progress(bool keep, const char *format, ...) __attribute__((format(p
 /* Stops every rank at once with our exit status for bugs. */
 _Noreturn void report_bug(const char *file, int line, const char *condition, const char *format,
                           ...) __attribute__((format(printf, 4, 5)));
+
+/* Stops every rank at once, as there is no memory of that size, with the status of what the
+ * machine fails in. */
+_Noreturn void report_no_memory(size_t bytes);
 
 #define CHECK(condition, ...)                                                                  \
     do {                                                                                       \

@@ -230,7 +230,7 @@ static bool place_copies(struct contact_set *contacts, const struct candidates *
     return placed;
 }
 
-static void place_memory(struct contact_set *contacts, const struct candidates *candidates,
+static bool place_memory(struct contact_set *contacts, const struct candidates *candidates,
                          const struct spheres *spheres, int first, int second,
                          struct memory memory)
 {
@@ -242,7 +242,7 @@ static void place_memory(struct contact_set *contacts, const struct candidates *
     } else {
         placed = place_between(contacts, candidates, first, second, false, memory);
     }
-    CHECK(placed, "a touching contact is not in the list");
+    return placed;
 }
 
 static bool touched_before(const struct contact_set *contacts, int k)
@@ -264,8 +264,9 @@ static void find_sources(struct contact_set *contacts, const struct candidates *
         if (first < 0 || second < 0 ||
             (first >= spheres->n_owned && second >= spheres->n_owned))
             continue;
-        place_memory(contacts, candidates, spheres, first, second,
-                     (struct memory){.before = k});
+        CHECK(place_memory(contacts, candidates, spheres, first, second,
+                           (struct memory){.before = k}),
+              "a touching contact is not in the list");
     }
 }
 
@@ -446,10 +447,10 @@ int contact_set_count(const struct contact_set *contacts, const struct spheres *
     return n;
 }
 
-void contact_set_restore(struct contact_set *contacts, const struct candidates *candidates,
+bool contact_set_restore(struct contact_set *contacts, const struct candidates *candidates,
                          const struct spheres *spheres, const struct contact_record *record,
                          int first, int second)
 {
-    place_memory(contacts, candidates, spheres, first, second,
-                 (struct memory){.history = record->history});
+    return place_memory(contacts, candidates, spheres, first, second,
+                        (struct memory){.history = record->history});
 }

@@ -121,8 +121,8 @@ int contact_set_records_of(const struct contact_set *contacts, const struct sphe
 int contact_set_count(const struct contact_set *contacts, const struct spheres *spheres);
 
 /* Puts a record's history where its pair (storage indices of first_id and second_id, of any
- * copies of them) is listed.  A pair that is not listed is a mistake of ours.  Local. */
-void contact_set_restore(struct contact_set *contacts, const struct candidates *candidates,
+ * copies of them) is listed; false where it is not, for the two are far apart.  Local. */
+bool contact_set_restore(struct contact_set *contacts, const struct candidates *candidates,
                          const struct spheres *spheres, const struct contact_record *record,
                          int first, int second);
 

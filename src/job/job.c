@@ -190,6 +190,8 @@ static void libraries_read(struct yaml_tree *trees, struct yaml_tree_node *root,
 
 /* ------------------------------------------------------------------------------- filling */
 
+/* "runs/../hopper.yaml" -> "hopper".  The run's folder is called so: no name that leads out of
+ * where it is, or that a terminal would obey. */
 char *job_name(const char *path)
 {
     const char *slash = strrchr(path, '/');
@@ -197,6 +199,13 @@ char *job_name(const char *path)
     char *point = strrchr(name, '.');
     if (point != NULL && point != name)
         *point = '\0';
+    for (unsigned char *c = (unsigned char *)name; *c != '\0'; c++)
+        if (*c < 0x20 || *c == 0x7f)
+            *c = '_';
+    if (name[0] == '\0' || strcmp(name, ".") == 0 || strcmp(name, "..") == 0) {
+        free(name);
+        name = array_string("job");
+    }
     return name;
 }
 

@@ -139,6 +139,10 @@ static void content_names_check(const struct check *check)
 
 /* ------------------------------------------------------------------------------- CSV files */
 
+/* What is longer is no line of ours; the rest of it is taken for another one, which has too few
+ * cells. */
+enum { CSV_LINE_MOST = 4096 };
+
 /* Column of a name in a comma-separated line, -1 where there is none. */
 static int column_find(const char *line, const char *name)
 {
@@ -177,10 +181,9 @@ static int material_find(const struct job *job, const char *line, int column)
 static void csv_materials(const struct check *check, const char *file, FILE *in, int column,
                           bool *group)
 {
-    char *line = NULL;
-    size_t size = 0;
+    char line[CSV_LINE_MOST];
     int n_unknown = 0;
-    for (int number = 2; n_unknown < 20 && getline(&line, &size, in) > 0; number++) {
+    for (int number = 2; n_unknown < 20 && fgets(line, sizeof line, in) != NULL; number++) {
         if (line[strspn(line, " \t\r\n")] == '\0')
             continue;
         const int material = material_find(check->job, line, column);
@@ -194,7 +197,6 @@ static void csv_materials(const struct check *check, const char *file, FILE *in,
             n_unknown++;
         }
     }
-    free(line);
 }
 
 /* Looks at the file of a group: can it be read, does it have the columns that are needed, which
@@ -202,11 +204,10 @@ static void csv_materials(const struct check *check, const char *file, FILE *in,
 static void csv_check(const struct check *check, int i, bool *group)
 {
     const struct job_spheres *spheres = &check->job->spheres[i];
-    char path[64], *header = NULL;
-    size_t size = 0;
+    char path[64], header[CSV_LINE_MOST];
     PATH("spheres.%d.packing.file", i);
     FILE *in = fopen(spheres->file, "r");
-    if (in == NULL || getline(&header, &size, in) <= 0) {
+    if (in == NULL || fgets(header, sizeof header, in) == NULL) {
         mistake(check, path, "is '%.200s', which cannot be read: %s; a CSV file is expected",
                 spheres->file, in == NULL ? strerror(errno) : "there is nothing in it");
     } else {
@@ -227,7 +228,6 @@ static void csv_check(const struct check *check, int i, bool *group)
         else
             group[spheres->material] = true;
     }
-    free(header);
     if (in != NULL)
         fclose(in);
 }
@@ -241,7 +241,7 @@ static void region_check(const struct check *check, const char *path,
 {
     const struct job *job = check->job;
     const struct vec3 along = vec3_sub(region->to, region->from);
-    bool found = false;
+    bool found = region->body == NULL; /* that was told */
     if (region->kind == JOB_REGION_BOX &&
         !(region->min.x < region->max.x && region->min.y < region->max.y &&
           region->min.z < region->max.z))
@@ -251,7 +251,8 @@ static void region_check(const struct check *check, const char *path,
     if (region->kind == JOB_REGION_CYLINDER && !(vec3_norm(along) > 0.0))
         mistake(check, path, "has an axis without length; two different ends are expected");
     for (int b = 0; region->kind == JOB_REGION_INSIDE && b < job->n_bodies; b++)
-        found = found || strcmp(job->bodies[b].name, region->body) == 0;
+        found = found ||
+                (job->bodies[b].name != NULL && strcmp(job->bodies[b].name, region->body) == 0);
     if (region->kind == JOB_REGION_INSIDE && !found)
         mistake(check, path, "names '%s', which is no body; the name of a body is expected",
                 region->body);

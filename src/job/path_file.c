@@ -11,7 +11,7 @@
 #include "base/report.h"
 #include "job/job.h"
 
-enum { POINTS_MOST = 20000, COLUMNS_MOST = 64, MISTAKES_MOST = 20 };
+enum { POINTS_MOST = 20000, COLUMNS_MOST = 64, MISTAKES_MOST = 20, LINE_MOST = 4096 };
 enum { T, X, Y, Z, ANGLE, N_NAMES };
 static const char *const NAMES[N_NAMES] = {"t_s", "x_m", "y_m", "z_m", "angle_rad"};
 
@@ -84,12 +84,18 @@ static bool read_row(const struct table *table, char *line, struct job_path_poin
 
 static void read_rows(struct table *table, FILE *in, struct job_motion *motion)
 {
-    char *line = NULL;
-    size_t size = 0;
+    char line[LINE_MOST];
     int capacity = 0;
     const int n_before = table->mistakes->n;
-    while (getline(&line, &size, in) > 0 && table->mistakes->n < n_before + MISTAKES_MOST) {
+    while (fgets(line, sizeof line, in) != NULL &&
+           table->mistakes->n < n_before + MISTAKES_MOST) {
         table->line++;
+        if (strlen(line) == sizeof line - 1) {
+            mistakes_add(table->mistakes, table->path, table->line, 1,
+                         "a line of more than %d bytes; shorter ones are expected",
+                         LINE_MOST - 2);
+            break;
+        }
         if (table->line == 1 && !read_header(table, line))
             break;
         if (table->line == 1 || line[strspn(line, " \t\r\n")] == '\0')
@@ -103,7 +109,6 @@ static void read_rows(struct table *table, FILE *in, struct job_motion *motion)
         if (read_row(table, line, &motion->path.points[motion->path.n]))
             motion->path.n++;
     }
-    free(line);
 }
 
 static void read_file(struct job_motion *motion, struct mistakes *mistakes)

@@ -78,28 +78,44 @@ static double volume_asked(const struct job *job, const struct job_spheres *grou
     return group->fraction * region->volume;
 }
 
-/* Draws radii until there are as many, or as much of them, as asked for: the last one only if
- * that comes nearer.  Returns their volume, or 0 where they would be too many. */
+static double draw_radius(const struct packing *packing, int64_t k)
+{
+    return sizes_draw(&packing->sizes, packing->seed, packing->sizes_stream, k);
+}
+
+/* How many radii are as many, or as much of them, as asked for: the last one only if that comes
+ * nearer.  *volume is theirs.  At most SPHERES_MOST + 1. */
+static int64_t count_radii(const struct packing *packing, double asked, double *volume)
+{
+    const int64_t count = asked > 0.0 ? SPHERES_MOST + 1 : packing->group->count;
+    int64_t k = 0;
+    *volume = 0.0;
+    if (count > SPHERES_MOST && asked <= 0.0)
+        return count;
+    for (; k < count && (asked <= 0.0 || *volume < asked); k++) {
+        const double more = volume_of(draw_radius(packing, k));
+        if (asked > 0.0 && k > 0 && *volume + 0.5 * more > asked)
+            break;
+        *volume += more;
+    }
+    return k;
+}
+
+/* Draws the radii.  Returns their volume, or 0 where they would be too many. */
 static double draw_radii(struct packing *packing, double asked)
 {
     const struct packing_sphere standard = {.velocity = packing->group->velocity,
                                             .angular_velocity = packing->group->spin,
                                             .material = packing->group->material};
-    int64_t capacity = 0;
-    double volume = 0.0;
-    for (int64_t k = 0; asked > 0.0 ? volume < asked : k < packing->group->count; k++) {
-        const double radius =
-            sizes_draw(&packing->sizes, packing->seed, packing->sizes_stream, k);
-        const double more = volume_of(radius);
-        if (k >= SPHERES_MOST)
-            return 0.0;
-        if (asked > 0.0 && k > 0 && volume + 0.5 * more > asked)
-            break;
-        ARRAY_GROW(packing->rows, k + 1, capacity);
+    double volume;
+    const int64_t n = count_radii(packing, asked, &volume);
+    if (n > SPHERES_MOST)
+        return 0.0;
+    packing->rows = array_allocate((size_t)n, sizeof *packing->rows);
+    packing->n = n;
+    for (int64_t k = 0; k < n; k++) {
         packing->rows[k] = standard;
-        packing->rows[k].radius = radius;
-        packing->n = k + 1;
-        volume += more;
+        packing->rows[k].radius = draw_radius(packing, k);
     }
     return volume;
 }

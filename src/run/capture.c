@@ -2,6 +2,7 @@
  * they are sorted. */
 #include "run/capture.h"
 
+#include <errno.h>
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,14 +38,18 @@ int capture_open(struct simulation *sim, const struct run_folder *folder)
     char *why = capture->every > 0 ? file_make_folders(path) : NULL;
     int status = REPORT_FINISHED;
     int64_t *steps;
-    const int n = file_steps(path, &steps);
+    const int n = file_steps(path, &steps), error = errno;
     if (why != NULL) {
         report_error("cannot make the folder %s: %s; name another one with --out", path, why);
+        status = REPORT_STORAGE;
+    } else if (n < 0) {
+        report_error("cannot read %s: %s; mend that and give the same command again", path,
+                     strerror(error));
         status = REPORT_STORAGE;
     }
     xdmf_open(&capture->index, path, sim->step);
     if (status == REPORT_FINISHED && n > 0)
-        status = xdmf_write(&capture->index, path);
+        status = xdmf_write(&capture->index, folder, path);
     free(steps);
     free(why);
     free(path);
@@ -232,7 +237,7 @@ int capture_write(struct simulation *sim, const struct run_folder *folder)
     int status = snapshot_write(sim->comm, path, &capture->snapshot);
     if (status == REPORT_FINISHED && sim->comm->rank == 0) {
         xdmf_add(&capture->index, &capture->snapshot);
-        status = xdmf_write(&capture->index, path);
+        status = xdmf_write(&capture->index, folder, path);
     }
     status = comm_agree(sim->comm, status);
     runtime_end(&sim->runtime, RUNTIME_SAMPLE);

@@ -693,7 +693,7 @@ static void print_start(const struct job *job, const struct comm *comm)
 
 void check_print(const struct job *job, const struct comm *comm)
 {
-    enum { BYTES_A_SPHERE = 3000, NANOSECONDS_A_STEP = 60, START_MOST = 4000000 };
+    enum { NANOSECONDS_A_STEP = 60, START_MOST = 4000000 };
     struct extent scene = extent_nothing();
     struct bodies bodies;
     const int n_ranks = comm->n_ranks;
@@ -732,7 +732,7 @@ void check_print(const struct job *job, const struct comm *comm)
         "cost      %.3g particle-steps: of the order of %.3g s on %d rank%s; memory of the "
         "order of %.3g MB",
         particle_steps, particle_steps * NANOSECONDS_A_STEP * 1e-9 / n_ranks, n_ranks,
-        n_ranks == 1 ? "" : "s", n_most * BYTES_A_SPHERE * 1e-6);
+        n_ranks == 1 ? "" : "s", n_most * SIMULATION_BYTES_A_SPHERE * 1e-6);
     if (job->watch.motion + job->watch.overlap >= 1.0)
         report_warn("watch.motion and watch.overlap add up to 1 or more: a sphere could pass "
                     "through a surface unnoticed");

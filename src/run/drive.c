@@ -163,7 +163,7 @@ static int resume(struct drive *drive, bool *found)
     int64_t *steps = NULL;
     int64_t n = drive->comm->rank == 0 ? run_folder_checkpoints(&drive->folder, &steps) : 0;
     comm_broadcast(drive->comm, &n, sizeof n);
-    int status = REPORT_FINISHED;
+    int status = n < 0 ? REPORT_STORAGE : REPORT_FINISHED;
     *found = false;
     for (int64_t k = 0; k < n && !*found; k++) {
         char *path = drive->comm->rank == 0

@@ -42,7 +42,7 @@ static char *text_as_used(const struct options *options, bool *has_state)
     } else if (!options->fresh) {
         folder.path = intake_folder(options);
         char *path = array_format("%s/job.yaml", folder.path);
-        *has_state = run_folder_checkpoints(&folder, &steps) > 0;
+        *has_state = run_folder_checkpoints(&folder, &steps) != 0;
         why = file_read(path, INT_MAX, &text);
         free(path);
     }

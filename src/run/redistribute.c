@@ -124,21 +124,25 @@ static bool has_fixed_grid(const struct simulation *sim)
 }
 
 /* History of contacts that came with spheres from other ranks or from a file.  Where spheres
- * left the run, contacts with them end; their partner's rank cannot always know that before. */
-static void restore_arrivals(struct simulation *sim, bool some_left_run)
+ * left the run, contacts with them end; their partner's rank cannot always know that before.
+ * Returns how many are of spheres that are not near each other. */
+static int restore_arrivals(struct simulation *sim, bool some_left_run)
 {
     struct migrate *migrate = &sim->migrate;
+    int n_strange = 0;
     for (int r = 0; r < migrate->n_contacts; r++) {
         const struct contact_record *record = &migrate->contacts[r];
         const int first = lookup_find(&migrate->lookup, record->first_id);
         const int second = lookup_find(&migrate->lookup, record->second_id);
         if (some_left_run && (first < 0 || second < 0))
             continue;
-        CHECK(first >= 0 && second >= 0, "a contact of a sphere that is not here");
-        contact_set_restore(&sim->contacts, &sim->candidates, &sim->spheres, record, first,
-                            second);
+        if (first < 0 || second < 0 ||
+            !contact_set_restore(&sim->contacts, &sim->candidates, &sim->spheres, record, first,
+                                 second))
+            n_strange++;
     }
     migrate->n_contacts = 0;
+    return n_strange;
 }
 
 static void restore_facets(struct simulation *sim)
@@ -167,8 +171,9 @@ static void adapt_allowances(struct simulation *sim)
                                               : most;
 }
 
-/* Global search with the present owners and ghosts; moved as for contact_set_prune(). */
-static void search(struct simulation *sim, const int *moved, bool some_left_run)
+/* Global search with the present owners and ghosts; moved as for contact_set_prune(). Returns
+ * how many contacts that arrived do not fit. */
+static int search(struct simulation *sim, const int *moved, bool some_left_run)
 {
     struct spheres *spheres = &sim->spheres;
     const bool all_pairs = sim->job->force.search == JOB_SEARCH_ALL_PAIRS;
@@ -179,7 +184,7 @@ static void search(struct simulation *sim, const int *moved, bool some_left_run)
     if (!all_pairs)
         adapt_allowances(sim);
     prune(sim, moved);
-    restore_arrivals(sim, some_left_run);
+    const int n_strange = restore_arrivals(sim, some_left_run);
     facet_contacts_search(&sim->facets, spheres, &sim->bodies, sim->body_allowance, all_pairs);
     sections_search(&sim->sections, spheres);
     removals_search(&sim->removals, spheres);
@@ -190,6 +195,7 @@ static void search(struct simulation *sim, const int *moved, bool some_left_run)
     sim->spent = (struct simulation_spent){0.0, 0.0, 0.0};
     sim->runtime.searches++;
     watch_searched(&sim->watch, sim);
+    return n_strange;
 }
 
 /* The high level: spheres that crossed move, copies are made anew. */
@@ -244,12 +250,13 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
         sim->comm->n_ranks > 1 || renew || removed != NULL || born || sim->spheres.periodic.any;
     update_subdomains(sim, moves, renew, removed, &sim->contacts);
     runtime_end(&sim->runtime, RUNTIME_REDISTRIBUTE);
-    search(sim, moves ? sim->migrate.moved : NULL, removed != NULL);
+    const int n_strange = search(sim, moves ? sim->migrate.moved : NULL, removed != NULL);
+    CHECK(n_strange == 0, "%d contacts of spheres that are not here", n_strange);
     migrate_forget(&sim->migrate);
     runtime_end(&sim->runtime, RUNTIME_SEARCH);
 }
 
-void redistribute_first(struct simulation *sim)
+bool redistribute_first(struct simulation *sim)
 {
     sim->asked_most = ASKED_LEAST;
     choose_body_allowances(sim);
@@ -260,8 +267,9 @@ void redistribute_first(struct simulation *sim)
         repartition(sim);
     boxes_update(&sim->boxes);
     update_subdomains(sim, true, true, NULL, NULL);
-    search(sim, sim->migrate.moved, false);
+    const int n_strange = search(sim, sim->migrate.moved, false);
     migrate_forget(&sim->migrate);
+    return comm_agree(sim->comm, n_strange > 0) == 0;
 }
 
 void redistribute_spend(struct simulation *sim, const double spent[2])

@@ -23,8 +23,9 @@ void redistribute(struct simulation *sim, const unsigned char *removed);
 /* Makes the inner list anew out of the candidates.  Local, on all ranks together. */
 void redistribute_inner(struct simulation *sim);
 /* First distribution of spheres that lie anywhere, in any order; the migration holds the
- * records of their contacts.  Collective. */
-void redistribute_first(struct simulation *sim);
+ * records of their contacts.  False where some of these join spheres that are far apart.
+ * Collective. */
+bool redistribute_first(struct simulation *sim);
 
 /* Books the motion of the step just done against the allowances; spent[] is the largest on any
  * rank. Finds out exactly where the bound says stale.  Collective when it does. */

@@ -8,6 +8,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/process.h"
 #include "base/report.h"
 #include "job/job.h"
 #include "model/gravity.h"
@@ -104,8 +105,9 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     watch_init(&sim->watch, job);
 }
 
-/* Spheres are here in some order: complete them, choose kernels, distribute and search. */
-static void finish(struct simulation *sim, enum isa isa)
+/* Spheres are here in some order: complete them, choose kernels, distribute and search.  `from`
+ * is the file that they come from, if any.  Returns a REPORT_ status, the reason said. */
+static int finish(struct simulation *sim, enum isa isa, const char *from)
 {
     for (int i = 0; i < sim->spheres.n_owned; i++)
         sphere_complete(&sim->spheres, i, &sim->materials);
@@ -117,9 +119,14 @@ static void finish(struct simulation *sim, enum isa isa)
     sim->half_buffer = choose_half_buffer(sim);
     runtime_init(&sim->runtime, sim->step);
     bodies_place(&sim->bodies, sim->step, sim->dt);
-    redistribute_first(sim);
+    const bool fits = redistribute_first(sim);
     watch_bodies(&sim->watch, sim);
     runtime_begin(&sim->runtime);
+    if (fits)
+        return REPORT_FINISHED;
+    report_error("cannot use the checkpoint %s: it has contacts of spheres that are far apart",
+                 from);
+    return REPORT_STORAGE;
 }
 
 void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
@@ -142,9 +149,29 @@ void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
     sections_begin(&sim->sections, spheres, i);
 }
 
+/* Is there room in memory for so many spheres of this rank?  Said before any is taken: more
+ * than there is would be given, and the process be killed when it uses it.  Collective. */
+static int check_memory(const struct simulation *sim, int64_t n_here)
+{
+    static const double LEAST = 0.15; /* of SIMULATION_BYTES_A_SPHERE: rows and nothing else */
+    const double there = process_memory() / comm_ranks_here(sim->comm);
+    double share = (double)n_here * SIMULATION_BYTES_A_SPHERE / there;
+    comm_max(sim->comm, &share, 1);
+    if (share * LEAST > 1.0) {
+        report_error("the spheres need some %.2g times the memory that this machine has for %d "
+                     "ranks; use more machines, or fewer spheres",
+                     share, sim->comm->n_ranks);
+        return REPORT_STORAGE;
+    }
+    if (share > 1.0)
+        report_warn("the spheres may need some %.2g times the memory that this machine has",
+                    share);
+    return REPORT_FINISHED;
+}
+
 /* The groups' spheres, random ones clear of those there `before`: of each, this rank begins
  * with a slice. */
-static void add_groups(struct simulation *sim, const struct packing *before)
+static int add_groups(struct simulation *sim, const struct packing *before)
 {
     const int64_t rank = sim->comm->rank, n_ranks = sim->comm->n_ranks;
     struct packings packings;
@@ -157,8 +184,10 @@ static void add_groups(struct simulation *sim, const struct packing *before)
     for (int g = 0; g < packings.n; g++)
         n_here +=
             packings.groups[g].n * (rank + 1) / n_ranks - packings.groups[g].n * rank / n_ranks;
-    spheres_reserve(&sim->spheres, (int)n_here);
-    for (int g = 0; g < packings.n; g++) {
+    const int status = check_memory(sim, n_here);
+    if (status == REPORT_FINISHED)
+        spheres_reserve(&sim->spheres, (int)n_here);
+    for (int g = 0; g < packings.n && status == REPORT_FINISHED; g++) {
         const int64_t n = packings.groups[g].n;
         for (int64_t k = n * rank / n_ranks; k < n * (rank + 1) / n_ranks; k++) {
             const struct packing_sphere sphere = packing_get(&packings.groups[g], k);
@@ -168,6 +197,7 @@ static void add_groups(struct simulation *sim, const struct packing *before)
         sim->next_id += n;
     }
     packings_close(&packings);
+    return status;
 }
 
 /* Opens the state that the job starts from, if it does from one. */
@@ -194,18 +224,21 @@ int simulation_create(struct simulation *sim, const struct comm *comm, const str
     begin(sim, comm, job, isa);
     if (job->start.given)
         status = chain_begin(&chain, sim);
+    if (status == REPORT_FINISHED)
+        status = add_groups(sim, &chain.packing);
+    chain_close(&chain);
     if (status != REPORT_FINISHED) {
-        chain_close(&chain);
         simulation_destroy(sim);
         return status;
     }
-    add_groups(sim, &chain.packing);
-    chain_close(&chain);
     sim->spheres.n_all = sim->spheres.n_owned;
     order_renew(&sim->spheres, comm);
-    finish(sim, isa);
-    observe_taken_over(sim);
-    return REPORT_FINISHED;
+    status = finish(sim, isa, job->start.given ? job->start.from : "");
+    if (status == REPORT_FINISHED)
+        observe_taken_over(sim);
+    else
+        simulation_destroy(sim);
+    return status;
 }
 
 /* Totals from the file: rank 0 holds them, the others hold nothing yet. */
@@ -282,8 +315,10 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
     checkpoint.contacts = NULL;
     checkpoint.facet_contacts = NULL;
     checkpoint_clear(&checkpoint);
-    finish(sim, isa);
-    return REPORT_FINISHED;
+    status = finish(sim, isa, checkpoint_path);
+    if (status != REPORT_FINISHED)
+        simulation_destroy(sim);
+    return status;
 }
 
 void simulation_destroy(struct simulation *sim)

@@ -42,6 +42,9 @@ struct simulation_spent {
     double bodies; /* of the bodies', since the last search */
 };
 
+/* What a sphere takes of memory, with its contacts, ghosts and messages, in round numbers. */
+enum { SIMULATION_BYTES_A_SPHERE = 3000 };
+
 struct simulation {
     const struct comm *comm;
     const struct job *job;

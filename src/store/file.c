@@ -162,6 +162,21 @@ static int write_all(int descriptor, const char *bytes, size_t n)
     return fsync(descriptor) != 0 ? errno : 0;
 }
 
+char *file_prepare(const char *temporary, const void *bytes, size_t n)
+{
+    file_survive_size_limit();
+    const int descriptor =
+        open(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
+    if (descriptor < 0)
+        return reason(errno);
+    int error = write_all(descriptor, bytes, n);
+    if (close(descriptor) != 0 && error == 0)
+        error = errno;
+    if (error != 0)
+        unlink(temporary);
+    return error != 0 ? reason(error) : NULL;
+}
+
 char *file_write(const char *path, const void *bytes, size_t n)
 {
     return file_write_beside(path, "", bytes, n);
@@ -169,17 +184,10 @@ char *file_write(const char *path, const void *bytes, size_t n)
 
 char *file_write_beside(const char *path, const char *tag, const void *bytes, size_t n)
 {
-    file_survive_size_limit();
     char *temporary = file_temporary(path, tag);
-    char *why = NULL;
-    const int descriptor = open(temporary, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-    if (descriptor < 0) {
-        why = reason(errno);
-    } else {
-        int error = write_all(descriptor, bytes, n);
-        if (close(descriptor) != 0 && error == 0)
-            error = errno;
-        why = error != 0 ? reason(error) : file_publish(temporary, path);
+    char *why = file_prepare(temporary, bytes, n);
+    if (why == NULL) {
+        why = file_publish(temporary, path);
         if (why != NULL)
             unlink(temporary);
     }
@@ -262,15 +270,23 @@ int file_steps(const char *folder, int64_t **steps)
     *steps = NULL;
     DIR *entries = opendir(folder);
     if (entries == NULL)
-        return 0;
-    for (const struct dirent *entry; (entry = readdir(entries)) != NULL;) {
+        return errno == ENOENT ? 0 : -1;
+    errno = 0;
+    for (const struct dirent *entry; (entry = readdir(entries)) != NULL; errno = 0) {
         const int64_t step = step_of(entry->d_name);
         if (step < 0)
             continue;
         ARRAY_GROW(*steps, n + 1, capacity);
         (*steps)[n++] = step;
     }
+    const int error = errno;
     closedir(entries);
+    errno = error;
+    if (error != 0) {
+        free(*steps);
+        *steps = NULL;
+        return -1;
+    }
     if (n > 0)
         qsort(*steps, (size_t)n, sizeof **steps, compare_steps);
     return n;

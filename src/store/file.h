@@ -32,6 +32,9 @@ char *file_sync(const char *path);
  * disk. */
 char *file_publish(const char *temporary, const char *path);
 
+/* Writes these bytes under a temporary name, forced to the disk; after a failure there is
+ * none. */
+char *file_prepare(const char *temporary, const void *bytes, size_t n);
 /* Replaces `path` by these bytes: temporary name, sync, rename. */
 char *file_write(const char *path, const void *bytes, size_t n);
 /* The same where others may do so at the same time: the tag keeps them apart. */
@@ -45,7 +48,7 @@ char *file_make_folders(const char *path);
 /* FOLDER/step_000000050000.h5; the caller frees it. */
 char *file_step_path(const char *folder, int64_t step);
 /* The steps of the files of such names in a folder, ascending; the caller frees *steps.  A
- * folder that cannot be read has none. */
+ * folder that is not there has none; one that cannot be read has -1 (errno says why). */
 int file_steps(const char *folder, int64_t **steps);
 
 #endif

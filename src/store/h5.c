@@ -87,6 +87,7 @@ static void fail_at(struct h5 *h5, const char *object)
 static void prepare(struct h5 *h5)
 {
     *h5 = (struct h5){.file = -1, .memory = -1};
+    H5PLset_loading_state(0); /* no file makes us load and run a filter of its choice */
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
@@ -184,6 +185,18 @@ void h5_group(struct h5 *h5, const char *path)
     H5Pclose(creation);
 }
 
+/* The size of an object's file: so that nobody asks for memory that a damaged number names. */
+static hsize_t file_size(struct h5 *h5, hid_t object, const char *path)
+{
+    hsize_t size = 0;
+    const hid_t file = H5Iget_file_id(object); /* a link's is another one */
+    if (file < 0 || H5Fget_filesize(file, &size) < 0)
+        fail_at(h5, path);
+    if (file >= 0)
+        H5Fclose(file);
+    return size;
+}
+
 /* ------------------------------------------------------------------------------- attributes */
 
 static void put_attribute(struct h5 *h5, const char *object, const char *name, hid_t file_type,
@@ -244,6 +257,7 @@ static hid_t open_attribute(struct h5 *h5, const char *object, const char *name,
     *size = H5Tget_size(type);
     const bool fits = H5Tget_class(type) == class && H5Tis_variable_str(type) <= 0 &&
                       *size > 0 && *size <= size_max &&
+                      *size <= file_size(h5, attribute, object) &&
                       H5Sget_simple_extent_npoints(space) == 1;
     H5Tclose(type);
     H5Sclose(space);
@@ -373,7 +387,8 @@ char *h5_get_document(struct h5 *h5, const char *path)
     const size_t size = H5Tget_size(stored);
     const bool fits = H5Tget_class(stored) == H5T_STRING && H5Tis_variable_str(stored) <= 0 &&
                       size > 0 && size <= DOCUMENT_MAX &&
-                      H5Sget_simple_extent_npoints(space) == 1;
+                      H5Sget_simple_extent_npoints(space) == 1 &&
+                      size <= file_size(h5, set, path);
     char *text = array_allocate(fits ? size + 1 : 1, 1);
     const hid_t type = text_type(size);
     if (!fits)
@@ -469,12 +484,19 @@ void h5_link(struct h5 *h5, const char *path, const char *file, const char *obje
         fail_at(h5, path);
 }
 
-static bool is_packed(hid_t set)
+/* The number of values in a piece of a packed data set; 0: it is not packed. */
+static hsize_t piece_of(hid_t set)
 {
+    hsize_t shape[H5S_MAX_RANK], n = 0;
     const hid_t creation = H5Dget_create_plist(set);
-    const bool packed = H5Pget_layout(creation) == H5D_CHUNKED;
+    if (H5Pget_layout(creation) == H5D_CHUNKED) {
+        const int rank = H5Pget_chunk(creation, H5S_MAX_RANK, shape);
+        n = 1;
+        for (int k = 0; k < rank; k++)
+            n *= shape[k]; /* HDF5 has no piece of 4 GiB or more */
+    }
     H5Pclose(creation);
-    return packed;
+    return n;
 }
 
 /* The shape of a data set as rows x width; false when it has neither one nor two dimensions. */
@@ -521,17 +543,11 @@ int64_t h5_count_rows(struct h5 *h5, const char *path, const struct field *field
     const hid_t set = open_rows(h5, path, field, &n);
     if (set < 0)
         return 0;
-    /* So that nobody asks for memory that a damaged number names. */
-    hsize_t size = 0;
-    const hid_t file = H5Iget_file_id(set); /* a link's is another one */
-    if (file < 0 || H5Fget_filesize(file, &size) < 0)
-        fail_at(h5, path);
-    if (is_packed(set))
-        size *= PACKED_MOST;
-    if (h5->why == NULL && (hsize_t)n > size / field_size(field))
+    const hsize_t piece = piece_of(set);
+    const hsize_t most = file_size(h5, set, path) * (piece > 0 ? PACKED_MOST : 1);
+    if (h5->why == NULL && ((hsize_t)n > most / field_size(field) ||
+                            piece > most / field_component_size(field->type)))
         h5_fail(h5, "%s has more rows than the file can hold", path);
-    if (file >= 0)
-        H5Fclose(file);
     H5Dclose(set);
     return h5->why == NULL ? n : 0;
 }

@@ -2,12 +2,14 @@
  * See run_folder.h.
  *
  * A folder is looked through before anything in it is touched: one with other things than a
- * run's in it is somebody's folder, not ours.
+ * run's in it is somebody's folder, not ours.  Nor is one whose files are links, through which
+ * we would write to other places, or no plain files.
  */
 #include "store/run_folder.h"
 
 #include <dirent.h>
 #include <errno.h>
+#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -37,6 +39,13 @@ enum { JOB_TEXT_MAX = 1 << 26 };
 static char *path_in(const char *folder, const char *name)
 {
     return array_format("%s/%s", folder, name);
+}
+
+/* Those of them, and other names that are ours, that are folders. */
+static bool is_folder(const char *name)
+{
+    return strcmp(name, "checkpoints") == 0 || strcmp(name, "series") == 0 ||
+           strcmp(name, "snapshots") == 0;
 }
 
 static bool is_result(const char *name)
@@ -70,7 +79,18 @@ static bool is_ours(const char *name)
 struct look {
     bool exists, has_job, has_results;
     char *foreign; /* something that is not a run's, NULL when there is nothing */
+    char *strange; /* a file of ours that leads elsewhere, or is none */
 };
+
+/* Is a name that we write to something else than a plain file or folder? */
+static bool is_strange(int folder, const char *name)
+{
+    struct stat state;
+    if ((!is_result(name) && strcmp(name, "lock") != 0) ||
+        fstatat(folder, name, &state, AT_SYMLINK_NOFOLLOW) != 0)
+        return false;
+    return is_folder(name) ? !S_ISDIR(state.st_mode) : !S_ISREG(state.st_mode);
+}
 
 /* What is there?  Nothing is changed. */
 static int look_at(const char *path, struct look *look)
@@ -90,6 +110,8 @@ static int look_at(const char *path, struct look *look)
         look->has_results = look->has_results || is_result(entry->d_name);
         if (!is_ours(entry->d_name) && look->foreign == NULL)
             look->foreign = array_string(entry->d_name);
+        if (look->strange == NULL && is_strange(dirfd(entries), entry->d_name))
+            look->strange = array_string(entry->d_name);
     }
     closedir(entries);
     return REPORT_FINISHED;
@@ -164,6 +186,14 @@ static int set_results_aside(const struct run_folder *folder)
     return status;
 }
 
+/* Says why, which errno tells. */
+static int cannot_read(const char *path)
+{
+    report_error("cannot read %s: %s; mend that and give the same command again", path,
+                 strerror(errno));
+    return REPORT_STORAGE;
+}
+
 /* Moves the files of RUN/name later than `step` to ASIDE/name; *aside is made when it is
  * needed. */
 static int set_later_aside(const struct run_folder *folder, const char *name, int64_t step,
@@ -172,7 +202,7 @@ static int set_later_aside(const struct run_folder *folder, const char *name, in
     char *from = path_in(folder->path, name), *to = NULL;
     int64_t *steps;
     const int n = file_steps(from, &steps);
-    int status = REPORT_FINISHED;
+    int status = n < 0 ? cannot_read(from) : REPORT_FINISHED;
     for (int i = 0; i < n && status == REPORT_FINISHED; i++) {
         if (steps[i] <= step)
             continue;
@@ -270,6 +300,19 @@ static void remove_temporaries(const struct run_folder *folder)
     free(snapshots);
 }
 
+static int put_job(const struct run_folder *folder, const char *job_text)
+{
+    char *path = path_in(folder->path, "job.yaml"), *why;
+    const bool done = run_folder_replace(folder, path, job_text, strlen(job_text), &why);
+    if (why != NULL)
+        report_error(
+            "cannot write %s: %s; free some space or mend the disk and run the command again",
+            path, why);
+    free(why);
+    free(path);
+    return done ? REPORT_FINISHED : REPORT_STORAGE;
+}
+
 /* With the lock held: brings the folder's content in line with the job. */
 static int settle(const struct run_folder *folder, const struct look *look,
                   const char *job_text, bool fresh, bool *resumes)
@@ -283,11 +326,8 @@ static int settle(const struct run_folder *folder, const struct look *look,
         status = make_subfolders(folder->path);
     if (status == REPORT_FINISHED)
         remove_temporaries(folder);
-    if (status == REPORT_FINISHED) {
-        char *path = path_in(folder->path, "job.yaml");
-        status = run_folder_write_file(path, job_text);
-        free(path);
-    }
+    if (status == REPORT_FINISHED)
+        status = put_job(folder, job_text);
     *resumes = status == REPORT_FINISHED && look->has_job && !fresh;
     return status;
 }
@@ -301,13 +341,20 @@ static int judge(const char *path, const struct look *look, bool fresh)
             path, look->foreign);
         return REPORT_BAD_INPUT;
     }
+    if (look->strange != NULL) {
+        report_error("%s/%s is %s; a run writes to nothing outside its folder: remove it, or "
+                     "name another folder with --out",
+                     path, look->strange,
+                     is_folder(look->strange) ? "no folder of its own" : "no plain file");
+        return REPORT_BAD_INPUT;
+    }
     if (look->has_results && !look->has_job && !fresh) {
         char *checkpoints = path_in(path, "checkpoints");
         int64_t *steps;
         const int n = file_steps(checkpoints, &steps);
         free(steps);
         free(checkpoints);
-        if (n > 0) {
+        if (n != 0) {
             report_error(
                 "%s holds checkpoints but no job.yaml that says of what; name another folder "
                 "with --out, or start over with --fresh, which sets them aside",
@@ -324,6 +371,7 @@ static int inspect(const char *path, bool fresh, struct look *look)
     if (status == REPORT_FINISHED)
         status = judge(path, look, fresh);
     free(look->foreign);
+    free(look->strange);
     return status;
 }
 
@@ -380,6 +428,8 @@ int run_folder_checkpoints(const struct run_folder *folder, int64_t **steps)
 {
     char *path = path_in(folder->path, "checkpoints");
     const int n = file_steps(path, steps);
+    if (n < 0)
+        (void)cannot_read(path);
     free(path);
     for (int i = 0; i < n / 2; i++) {
         const int64_t step = (*steps)[i];
@@ -401,6 +451,27 @@ void run_folder_prune(const struct run_folder *folder, int keep)
         free(path);
     }
     free(steps);
+}
+
+bool run_folder_replace(const struct run_folder *folder, const char *path, const void *bytes,
+                        size_t n, char **why)
+{
+    char *temporary = file_temporary(path, run_folder_tag(folder));
+    *why = file_prepare(temporary, bytes, n);
+    bool done = *why == NULL && !run_folder_is_lost(folder);
+    if (done) {
+        *why = file_publish(temporary, path);
+        done = *why == NULL;
+    }
+    if (!done)
+        unlink(temporary);
+    /* Who has lost the folder misses files that the new owner cleared away. */
+    if (*why != NULL && run_folder_is_lost(folder)) {
+        free(*why);
+        *why = NULL;
+    }
+    free(temporary);
+    return done;
 }
 
 void run_folder_status(const struct run_folder *folder, const char *text)

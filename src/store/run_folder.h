@@ -9,6 +9,7 @@
 #define TREMIE_STORE_RUN_FOLDER_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "store/run_lock.h"
@@ -45,13 +46,20 @@ const char *run_folder_tag(const struct run_folder *folder);
  * frees. */
 char *run_folder_checkpoint_path(const struct run_folder *folder, int64_t step);
 char *run_folder_series_path(const struct run_folder *folder, int64_t step);
-/* Steps of the checkpoints there are, newest first; caller frees *steps. */
+/* Steps of the checkpoints there are, newest first; caller frees *steps.  -1, the reason said,
+ * where that cannot be known. */
 int run_folder_checkpoints(const struct run_folder *folder, int64_t **steps);
 /* Keeps the newest `keep` checkpoints; series segments stay. */
 void run_folder_prune(const struct run_folder *folder, int keep);
 /* On resume from `step`: later checkpoints, segments and snapshots are moved into
  * RUN/set_aside_N/ (said). */
 int run_folder_rewind(const struct run_folder *folder, int64_t step);
+/* Replaces a file of the folder by these bytes, forced to the disk.  False: not; *why is the
+ * machine's reason (the caller frees it) or, when the folder is another's now, which was
+ * said, NULL.  An owner that is stopped here and awakes when it is robbed replaces nothing:
+ * the new one has cleared away what was to get the name. */
+bool run_folder_replace(const struct run_folder *folder, const char *path, const void *bytes,
+                        size_t n, char **why);
 /* Replaces RUN/status with this text (temporary name, rename). */
 void run_folder_status(const struct run_folder *folder, const char *text);
 

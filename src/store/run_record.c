@@ -3,7 +3,6 @@
  */
 #include "store/run_record.h"
 
-#include <fcntl.h>
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -108,16 +107,20 @@ const char *run_record_state(const char *folder, const struct run_record_status 
 
 /* ------------------------------------------------------------------------------- history */
 
+/* Replaces the file, so that there is no half a line in it, and none of an owner that has lost
+ * the folder.  What cannot be read is left alone. */
 static void append(const struct run_folder *folder, const char *line)
 {
-    char *path = array_format("%s/history", folder->path);
-    const int file = open(path, O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0666);
-    if (file >= 0) {
+    char *path = array_format("%s/history", folder->path), *why = NULL;
+    char *before = read_file(folder->path, "history", HISTORY_MAX);
+    if (before != NULL || access(path, F_OK) != 0) {
+        char *text = array_format("%s%s", before != NULL ? before : "", line);
         /* It only informs: a disk that fails is met by what matters. */
-        (void)!write(file, line, strlen(line));
-        (void)fsync(file);
-        close(file);
+        (void)run_folder_replace(folder, path, text, strlen(text), &why);
+        free(text);
     }
+    free(why);
+    free(before);
     free(path);
 }
 

@@ -18,6 +18,7 @@
 #include "base/array.h"
 #include "base/report.h"
 #include "store/file.h"
+#include "store/run_folder.h"
 #include "store/snapshot.h"
 
 static const char *const NAMES[XDMF_N_KINDS] = {"spheres", "bodies", "contacts"};
@@ -244,23 +245,24 @@ static char *compose(const struct xdmf *xdmf, int kind, size_t *size)
     return NULL;
 }
 
-int xdmf_write(const struct xdmf *xdmf, const char *folder)
+int xdmf_write(const struct xdmf *xdmf, const struct run_folder *run, const char *folder)
 {
     int status = REPORT_FINISHED;
     for (int kind = 0; kind < XDMF_N_KINDS && status == REPORT_FINISHED; kind++) {
         char *path = array_format("%s/%s.xmf", folder, NAMES[kind]);
         size_t size = 0;
         char *text = compose(xdmf, kind, &size), *why = NULL;
+        bool done = true;
         if (text != NULL)
-            why = file_write(path, text, size);
+            done = run_folder_replace(run, path, text, size, &why);
         else
             (void)unlink(path);
-        if (why != NULL) {
+        if (!done)
+            status = REPORT_STORAGE;
+        if (why != NULL)
             report_error("cannot write %s: %s; free some space or mend the disk, then run the "
                          "same command again",
                          path, why);
-            status = REPORT_STORAGE;
-        }
         free(why);
         free(text);
         free(path);

@@ -11,6 +11,7 @@
 
 #include <stdint.h>
 
+struct run_folder;
 struct snapshot;
 
 enum { XDMF_SPHERES, XDMF_BODIES, XDMF_CONTACTS, XDMF_N_KINDS };
@@ -40,8 +41,8 @@ void xdmf_open(struct xdmf *xdmf, const char *folder, int64_t last_step);
 void xdmf_clear(struct xdmf *xdmf);
 /* Adds a snapshot, later than all others or in place of one of the same step.  Local. */
 void xdmf_add(struct xdmf *xdmf, const struct snapshot *snapshot);
-/* Writes the files, each there whole or not at all.  Returns a REPORT_ status, the reason said.
- * Local. */
-int xdmf_write(const struct xdmf *xdmf, const char *folder);
+/* Writes the files into a folder of the run's, each there whole or not at all.  Returns a
+ * REPORT_ status, the reason said.  Local. */
+int xdmf_write(const struct xdmf *xdmf, const struct run_folder *run, const char *folder);
 
 #endif

@@ -2,7 +2,7 @@
 # C is laid out as .clang-format says, and lines end where they should.  `clang-format -i FILE` mends it.
 set -euo pipefail
 
-sources=$(ls src/*/*.[ch] postproc/*.[ch] tests/unit/*.[ch] tests/verification/*.[ch] tests/stability/*.[ch] charts/*.[ch] config/compiler/*.c 2> /dev/null || true)
+sources=$(ls src/*/*.[ch] postproc/*.[ch] tests/unit/*.[ch] tests/verification/*.[ch] tests/stability/*.[ch] tests/faults/*.c tests/fuzz/*.[ch] charts/*.[ch] config/compiler/*.c 2> /dev/null || true)
 
 version=$(clang-format --version 2> /dev/null | sed -n 's/.*version \([0-9]*\)\..*/\1/p')
 if [ "$version" = 14 ]; then

@@ -103,8 +103,8 @@ static void restore_contacts(struct run *run)
         EXPECT(run->gone[record->first_id] || first >= 0);
         EXPECT(run->gone[record->second_id] || second >= 0);
         if (first >= 0 && second >= 0)
-            contact_set_restore(&run->contacts, &run->candidates, &run->spheres, record, first,
-                                second);
+            EXPECT(contact_set_restore(&run->contacts, &run->candidates, &run->spheres, record,
+                                       first, second));
     }
     migrate->n_contacts = 0;
 }

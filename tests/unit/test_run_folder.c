@@ -258,6 +258,19 @@ TEST(status_is_replaced)
     free(path);
 }
 
+/* What cannot be read is not taken for empty. */
+TEST(a_folder_that_cannot_be_read)
+{
+    int64_t *steps;
+    char *path =
+        array_format("%s/no_folder", getenv("SCRATCH") != NULL ? getenv("SCRATCH") : "/tmp");
+    EXPECT(run_folder_write_file(path, "x") == REPORT_FINISHED);
+    EXPECT(file_steps(path, &steps) == -1 && steps == NULL);
+    unlink(path);
+    EXPECT(file_steps(path, &steps) == 0 && steps == NULL);
+    free(path);
+}
+
 int main(int argc, char **argv)
 {
     return check_run(argc, argv);
