@@ -180,6 +180,27 @@ static void copy_motions(struct body *body, const struct job_body *asked)
     }
 }
 
+/* At rest, and as if it could not yield: run/deform knows better. */
+static struct body_skin *skin_build(int n_corners)
+{
+    const size_t n = (size_t)n_corners;
+    struct body_skin *skin = array_allocate(1, sizeof *skin);
+    skin->velocity = array_allocate(n, sizeof *skin->velocity);
+    skin->inverse_mass = array_allocate(n, sizeof *skin->inverse_mass);
+    skin->force = array_allocate(n, sizeof *skin->force);
+    return skin;
+}
+
+static void skin_free(struct body_skin *skin)
+{
+    if (skin == NULL)
+        return;
+    free(skin->velocity);
+    free(skin->inverse_mass);
+    free(skin->force);
+    free(skin);
+}
+
 static void body_build(struct body *body, const struct job_body *asked, double end)
 {
     *body = (struct body){.name = array_string(asked->name),
@@ -194,6 +215,11 @@ static void body_build(struct body *body, const struct job_body *asked, double e
         body->rigid = array_allocate(1, sizeof *body->rigid);
         rigid_build(body->rigid, asked, &body->mesh);
         body->speed_max = rigid_speed(body->rigid);
+        body->moves = true;
+        return;
+    }
+    if (asked->model == JOB_MODEL_SOLID) {
+        body->skin = skin_build(body->mesh.n_corners);
         body->moves = true;
         return;
     }
@@ -228,6 +254,7 @@ void bodies_clear(struct bodies *bodies)
         free(body->motions);
         free(body->surface);
         free(body->rigid);
+        skin_free(body->skin);
         free(body->name);
         mesh_clear(&body->mesh);
     }

@@ -376,26 +376,16 @@ static void build_shape(struct geometry *geometry, const struct job_body *body)
 static void build_solid(struct geometry *geometry, const struct job_body *body)
 {
     struct solid_mesh mesh;
-    struct solid_mesh_side *sides;
+    int n_vertices, *nodes, (*facets)[4];
     solid_mesh_build(&mesh, body);
-    const int n_sides = solid_mesh_surface(&mesh, &sides);
-    int *vertex = array_allocate((size_t)mesh.n_nodes, sizeof *vertex); /* 0: none, else + 1 */
-    reserve(geometry, mesh.n_nodes, n_sides);
-    for (int k = 0; k < n_sides; k++) {
-        int *facet = geometry->facets[geometry->n_facets++];
-        const int n =
-            solid_mesh_side_nodes(mesh.elements[sides[k].element], sides[k].side, facet);
-        for (int c = 0; c < n; c++) {
-            const int node = facet[c];
-            if (vertex[node] == 0) {
-                geometry->vertices[geometry->n_vertices++] = mesh.nodes[node];
-                vertex[node] = geometry->n_vertices;
-            }
-            facet[c] = vertex[node] - 1;
-        }
-    }
-    free(vertex);
-    free(sides);
+    const int n_facets = solid_mesh_skin(&mesh, &n_vertices, &nodes, &facets);
+    reserve(geometry, n_vertices, n_facets);
+    for (int v = 0; v < n_vertices; v++)
+        geometry->vertices[geometry->n_vertices++] = mesh.nodes[nodes[v]];
+    for (int f = 0; f < n_facets; f++)
+        memcpy(geometry->facets[geometry->n_facets++], facets[f], sizeof *facets);
+    free(nodes);
+    free(facets);
     solid_mesh_clear(&mesh);
 }
 
@@ -427,6 +417,8 @@ void geometry_build_mesh(struct mesh *mesh, const struct job_body *body)
     if (g.n_bands > 0)
         mesh_build_round(mesh, &profile, g.origin, g.direction, g.n_vertices, g.vertices,
                          g.n_facets, (const int(*)[4])g.facets);
+    else if (body->model == JOB_MODEL_SOLID)
+        mesh_build_skin(mesh, g.n_vertices, g.vertices, g.n_facets, (const int(*)[4])g.facets);
     else
         mesh_build(mesh, g.n_vertices, g.vertices, g.n_facets, (const int(*)[4])g.facets);
     geometry_clear(&g);

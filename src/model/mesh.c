@@ -149,6 +149,14 @@ static void add_fan(struct draft *draft, const struct mesh_face *quad, int facet
                  facet);
 }
 
+static int *all_apart(int n)
+{
+    int *own = array_allocate((size_t)n, sizeof *own);
+    for (int v = 0; v < n; v++)
+        own[v] = v;
+    return own;
+}
+
 /* A facet's vertices after joining; neighbours that fell together count once. */
 static struct mesh_face joined_facet(const int facet[4], const int *joined, int n_vertices)
 {
@@ -166,8 +174,9 @@ static struct mesh_face joined_facet(const int facet[4], const int *joined, int 
     return face;
 }
 
+/* Of a surface that deforms quads are divided whether flat or not, and no vertices are joined. */
 static struct draft draft_faces(int n_vertices, const struct vec3 *vertices, int n_facets,
-                                const int (*facets)[4])
+                                const int (*facets)[4], bool deforms)
 {
     struct draft draft = {.n_vertices = n_vertices, .first_degenerate = -1};
     draft.vertices =
@@ -177,11 +186,11 @@ static struct draft draft_faces(int n_vertices, const struct vec3 *vertices, int
     draft.mean_of = array_allocate((size_t)n_facets, sizeof *draft.mean_of);
     for (int v = 0; v < n_vertices; v++)
         draft.vertices[v] = vertices[v];
-    int *joined = joined_vertices(n_vertices, vertices);
+    int *joined = deforms ? all_apart(n_vertices) : joined_vertices(n_vertices, vertices);
     for (int f = 0; f < n_facets; f++) {
         const struct mesh_face face = joined_facet(facets[f], joined, n_vertices);
         const int n_before = draft.n_faces;
-        if (face.n < 3 || is_flat_and_convex(&face, draft.vertices))
+        if (face.n < 4 || (!deforms && is_flat_and_convex(&face, draft.vertices)))
             add_face(&draft, face, f);
         else
             add_fan(&draft, &face, f);
@@ -348,11 +357,11 @@ static void list_edges_at_vertices(struct mesh *mesh)
     free(end);
 }
 
-void mesh_build(struct mesh *mesh, int n_vertices, const struct vec3 *vertices, int n_facets,
-                const int (*facets)[4])
+static void build(struct mesh *mesh, int n_vertices, const struct vec3 *vertices, int n_facets,
+                  const int (*facets)[4], bool deforms)
 {
     *mesh = (struct mesh){0};
-    struct draft draft = draft_faces(n_vertices, vertices, n_facets, facets);
+    struct draft draft = draft_faces(n_vertices, vertices, n_facets, facets, deforms);
     mesh->n_degenerate = draft.n_degenerate;
     mesh->first_degenerate = draft.first_degenerate;
     drop_duplicates(&draft, mesh);
@@ -370,6 +379,20 @@ void mesh_build(struct mesh *mesh, int n_vertices, const struct vec3 *vertices, 
     mesh->face_normal = array_allocate((size_t)mesh->n_faces, sizeof *mesh->face_normal);
     mesh->face_borders = array_allocate_rows((size_t)mesh->n_faces, sizeof *mesh->face_borders);
     mesh_update(mesh);
+}
+
+void mesh_build(struct mesh *mesh, int n_vertices, const struct vec3 *vertices, int n_facets,
+                const int (*facets)[4])
+{
+    build(mesh, n_vertices, vertices, n_facets, facets, false);
+}
+
+void mesh_build_skin(struct mesh *mesh, int n_vertices, const struct vec3 *vertices,
+                     int n_facets, const int (*facets)[4])
+{
+    build(mesh, n_vertices, vertices, n_facets, facets, true);
+    CHECK(mesh->n_corners == n_vertices, "%d of %d vertices are on the surface",
+          mesh->n_corners, n_vertices);
 }
 
 /* ---- Round surfaces

@@ -104,6 +104,12 @@ struct mesh_survey {
 void mesh_build(struct mesh *mesh, int n_vertices, const struct vec3 *vertices, int n_facets,
                 const int (*facets)[4]);
 /*
+ * The same of a surface that will deform, all of whose vertices are used: its vertices keep their
+ * numbers, and every quad becomes four triangles.
+ */
+void mesh_build_skin(struct mesh *mesh, int n_vertices, const struct vec3 *vertices,
+                     int n_facets, const int (*facets)[4]);
+/*
  * Builds a surface of revolution about the axis from `origin` along `direction` (length 1). The
  * skin's vertices and facets are taken as they are.
  */

@@ -205,6 +205,33 @@ void solid_mesh_add_set(struct solid_mesh *mesh, const char *name,
     free(numbers);
 }
 
+int solid_mesh_skin(const struct solid_mesh *mesh, int *n_vertices, int **nodes,
+                    int (**facets)[4])
+{
+    struct solid_mesh_side *sides;
+    const int n = solid_mesh_surface(mesh, &sides);
+    int *vertex = array_allocate((size_t)mesh->n_nodes, sizeof *vertex); /* 0: none, else + 1 */
+    *nodes = array_allocate((size_t)mesh->n_nodes, sizeof **nodes);
+    *facets = array_allocate((size_t)n, sizeof **facets);
+    *n_vertices = 0;
+    for (int k = 0; k < n; k++) {
+        int *facet = (*facets)[k];
+        const int n_corners =
+            solid_mesh_side_nodes(mesh->elements[sides[k].element], sides[k].side, facet);
+        for (int c = 0; c < n_corners; c++) {
+            const int node = facet[c];
+            if (vertex[node] == 0) {
+                (*nodes)[*n_vertices] = node;
+                vertex[node] = ++*n_vertices;
+            }
+            facet[c] = vertex[node] - 1;
+        }
+    }
+    free(vertex);
+    free(sides);
+    return n;
+}
+
 const struct solid_mesh_set *solid_mesh_find(const struct solid_mesh *mesh, const char *name)
 {
     for (int k = 0; k < mesh->n_sets; k++)
