@@ -22,7 +22,8 @@ enum energy {
     ENERGY_FRICTION,
     ENERGY_DAMPING,
     ENERGY_TANGENTIAL,
-    ENERGY_WORK, /* put in by prescribed motion */
+    ENERGY_PLASTIC, /* by plastic flow of bodies that deform; a column where there are any */
+    ENERGY_WORK,    /* put in by prescribed motion */
     N_ENERGIES,
     ENERGY_SPRINGS = N_ENERGIES, /* of the elastic, that in springs with a memory */
     N_SUMMED,
@@ -96,6 +97,8 @@ void observe_init(struct observe *observe, const struct simulation *sim)
                       "dissipated_damping");
     series_add_column(table, "J", "lost by the tangential law as its stiffness changes",
                       "dissipated_tangential");
+    if (sim->deform.n > 0)
+        series_add_column(table, "J", "dissipated by plastic flow", "dissipated_plastic");
     series_add_column(
         table, "J",
         "work of prescribed motion on the spheres, of forces applied to bodies and of gravity "
@@ -281,6 +284,26 @@ static void add_forced_energies(const struct simulation *sim, double energies[N_
     }
 }
 
+/* Of bodies that deform, of all ranks: potential energy is less what gravity has done. */
+static void add_solid_energies(struct simulation *sim, double energies[N_ENERGIES])
+{
+    struct solid_energies solids = {.sums = {{{0}, 0, 0}}};
+    double value[SOLID_N_ENERGIES];
+    if (sim->deform.n == 0)
+        return;
+    deform_energies(sim, &solids);
+    exact_sum_reduce(sim->comm, solids.sums, SOLID_N_ENERGIES);
+    for (int e = 0; e < SOLID_N_ENERGIES; e++)
+        value[e] = solid_energy_value(&solids, (enum solid_energy)e);
+    energies[ENERGY_TRANSLATION] += value[SOLID_ENERGY_KINETIC];
+    energies[ENERGY_POTENTIAL] -= value[SOLID_ENERGY_GRAVITY];
+    energies[ENERGY_ELASTIC] += value[SOLID_ENERGY_ELASTIC] + value[SOLID_ENERGY_HOURGLASS];
+    energies[ENERGY_DAMPING] += value[SOLID_ENERGY_HOURGLASS_DAMPED] +
+                                value[SOLID_ENERGY_DAMPED] + value[SOLID_ENERGY_BACKGROUND];
+    energies[ENERGY_PLASTIC] = value[SOLID_ENERGY_PLASTIC];
+    energies[ENERGY_WORK] += value[SOLID_ENERGY_LOADS] + value[SOLID_ENERGY_SUPPORTS];
+}
+
 void observe_taken_over(struct simulation *sim)
 {
     struct exact_sum normal = {{0}, 0, 0}, *wound = &sim->observe.totals[OBSERVE_WOUND];
@@ -301,7 +324,8 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
         const double speed2 = sphere_energies(sim, i, own);
         speed2_max = speed2 > speed2_max ? speed2 : speed2_max;
         for (int e = 0; e < N_ENERGIES; e++) {
-            if (e != ENERGY_ELASTIC && e != ENERGY_WORK && e != ENERGY_TANGENTIAL)
+            if (e != ENERGY_ELASTIC && e != ENERGY_WORK && e != ENERGY_TANGENTIAL &&
+                e != ENERGY_PLASTIC)
                 exact_sum_add(&sums[e], own[e]);
         }
     }
@@ -313,7 +337,7 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
     /* A force works in half of the interval before the step and half of the one after: at the
      * step half of what it adds is done, the mean of before and after. */
     for (int b = 0; b < sim->facets.n_bodies; b++) {
-        if (sim->bodies.list[b].rigid != NULL)
+        if (sim->bodies.list[b].rigid != NULL || sim->bodies.list[b].skin != NULL)
             continue;
         exact_sum_merge(&sums[ENERGY_WORK], &sim->observe.work_before[b]);
         exact_sum_merge(&sums[ENERGY_WORK], &sim->facets.loads[b].work);
@@ -338,6 +362,7 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
     if (sim->gravity_varies)
         energies[ENERGY_WORK] += total_of(sim, &sim->observe.totals[OBSERVE_GRAVITY_WORK]);
     add_forced_energies(sim, energies);
+    add_solid_energies(sim, energies);
     *speed_max = sqrt(speed2_max);
 }
 
@@ -404,7 +429,8 @@ static int add_energy_values(struct simulation *sim, double *row, int n,
     double carried[2], balance;
     close_balance(sim, energies, carried, &balance);
     for (int e = 0; e < N_ENERGIES; e++)
-        row[n++] = energies[e];
+        if (e != ENERGY_PLASTIC || sim->deform.n > 0)
+            row[n++] = energies[e];
     row[n++] = carried[0];
     row[n++] = carried[1];
     row[n++] = sim->job->energy_ledger ? balance : (double)NAN;

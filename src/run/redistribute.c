@@ -72,9 +72,10 @@ static void choose_allowances(struct simulation *sim, int begin, int end)
 static void choose_body_allowances(struct simulation *sim)
 {
     for (int b = 0; b < sim->bodies.n; b++) {
-        /* A body that forces move may be faster by the next search. */
-        const double margin = sim->bodies.list[b].rigid != NULL ? SPEED_MARGIN : 1.0;
-        const double reach = margin * sim->bodies.list[b].speed_max * SEARCH_STEPS * sim->dt;
+        /* A body that forces move or deform may be faster by the next search. */
+        const struct body *body = &sim->bodies.list[b];
+        const double margin = body->rigid != NULL || body->skin != NULL ? SPEED_MARGIN : 1.0;
+        const double reach = margin * body->speed_max * SEARCH_STEPS * sim->dt;
         sim->body_allowance[b] = reach > sim->half_buffer ? reach : sim->half_buffer;
     }
 }
@@ -177,7 +178,7 @@ static int search(struct simulation *sim, const int *moved, bool some_left_run)
 {
     struct spheres *spheres = &sim->spheres;
     const bool all_pairs = sim->job->force.search == JOB_SEARCH_ALL_PAIRS;
-    if (sim->bodies.n_forced > 0)
+    if (sim->bodies.n_forced > 0 || sim->deform.n > 0)
         choose_body_allowances(sim);
     spheres_pad(spheres);
     candidates_search(&sim->candidates, spheres, all_pairs);

@@ -87,6 +87,7 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     sim->gravity = gravity_at(job, 0.0);
     sim->gravity_varies = gravity_varies(job);
     forced_init(&sim->forced, sim);
+    deform_init(&sim->deform, sim, isa);
     local_damping_init(&sim->local_damping, sim);
     spheres_init(&sim->spheres);
     periodic_init(&sim->spheres.periodic, job);
@@ -119,8 +120,10 @@ static int finish(struct simulation *sim, enum isa isa, const char *from)
     sim->half_buffer = choose_half_buffer(sim);
     runtime_init(&sim->runtime, sim->step);
     bodies_place(&sim->bodies, sim->step, sim->dt);
+    deform_begin(sim);
     const bool fits = redistribute_first(sim);
     watch_bodies(&sim->watch, sim);
+    watch_elements(&sim->watch, sim);
     runtime_begin(&sim->runtime);
     if (fits)
         return REPORT_FINISHED;
@@ -289,6 +292,7 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
                                     .full = sim->materials.full,
                                     .ledger = sim->job->energy_ledger,
                                     .removals = job->n_removals > 0};
+    checkpoint.n_more = deform_tables(sim, checkpoint.more);
     int status = checkpoint_read(comm, checkpoint_path, &checkpoint);
     const bool fits = status == REPORT_FINISHED && fits_job(sim, &checkpoint) &&
                       restore_monitors(sim, &checkpoint) == REPORT_FINISHED &&
@@ -307,6 +311,7 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
     }
     sim->step = checkpoint.step;
     sim->next_id = checkpoint.next_id;
+    deform_restore(sim, checkpoint.more);
     sim->spheres.n_all = sim->spheres.n_owned;
     sim->migrate.n_contacts = sim->migrate.contact_capacity = checkpoint.n_contacts;
     sim->migrate.contacts = checkpoint.contacts;
@@ -334,6 +339,7 @@ void simulation_destroy(struct simulation *sim)
     halo_clear(&sim->halo);
     migrate_clear(&sim->migrate);
     forced_clear(&sim->forced);
+    deform_clear(&sim->deform);
     local_damping_clear(&sim->local_damping);
     sections_clear(&sim->sections);
     contents_clear(&sim->contents);
@@ -429,6 +435,7 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
                                     .ledger = sim->job->energy_ledger,
                                     .removals = sim->removals.n > 0,
                                     .held = {sim, pairs_held, facets_held}};
+    checkpoint.n_more = deform_tables(sim, checkpoint.more);
     checkpoint.title = array_string(sim->job->title);
     checkpoint.job_text = array_string(job_text);
     checkpoint.n_contacts = contact_set_count(&sim->contacts, &sim->spheres);

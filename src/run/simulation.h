@@ -22,6 +22,7 @@
 #include "physics/integrate.h"
 #include "run/capture.h"
 #include "run/contents.h"
+#include "run/deform.h"
 #include "run/forced.h"
 #include "run/insertion.h"
 #include "run/local_damping.h"
@@ -81,6 +82,7 @@ struct simulation {
     struct vec3 gravity_change; /* since the step before [m/s2] */
     bool gravity_varies;
     struct forced forced;
+    struct deform deform;
     struct local_damping local_damping;
     struct sections sections;
     struct contents contents;

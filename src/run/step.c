@@ -150,6 +150,7 @@ static void begin(struct simulation *sim)
 {
     bodies_place(&sim->bodies, sim->step, sim->dt);
     forced_begin(sim);
+    deform_begin(sim);
     observe_gone(sim);
     if (!sim->gravity_varies)
         return;
@@ -182,6 +183,7 @@ void step_forces(struct simulation *sim)
     local_damping_apply(sim);
     sim->balance.busy += timer_now() - began;
     forced_plan(sim);
+    deform_plan(sim);
     observe(sim);
 }
 
@@ -193,6 +195,7 @@ void step(struct simulation *sim)
     step_forces(sim);
     integrate(sim, spent, &bad);
     forced_move(sim);
+    deform_move(sim);
     sim->step++;
     sections_pass(&sim->sections, &sim->spheres);
     removals_catch(&sim->removals, &sim->spheres, (double)sim->step * sim->dt, sim->dt);

@@ -357,6 +357,18 @@ void watch_bodies(struct watch *watch, const struct simulation *sim)
     }
 }
 
+void watch_elements(struct watch *watch, const struct simulation *sim)
+{
+    int body = -1;
+    const double critical = deform_critical_step(sim, &body);
+    if (sim->dt <= critical)
+        return;
+    fail(watch, WATCH_ELEMENT);
+    snprintf(watch->what, sizeof watch->what,
+             "time.step = %.4g s is %.3g of the critical step of body '%.60s', %.4g s", sim->dt,
+             sim->dt / critical, sim->bodies.list[body].name, critical);
+}
+
 void watch_forced(struct watch *watch, const struct simulation *sim)
 {
     for (int b = 0; sim->bodies.n_forced > 0 && b < sim->bodies.n; b++) {
@@ -420,6 +432,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
         OVERLAP,
         MOTION,
         BAD,
+        ELEMENT,
         RATE,
         ROUNDING,
         STOP,
@@ -435,6 +448,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
         [OVERLAP] = pairs > facets ? pairs : facets,
         [MOTION] = motion,
         [BAD] = bad ? 1.0 : 0.0,
+        [ELEMENT] = sim->deform.failed ? 1.0 : 0.0,
         [RATE] = watch->rate,
         [ROUNDING] = watch->rounding,
         [STOP] = (double)wish_to_stop(watch, sim),
@@ -459,6 +473,8 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
         fail(watch, WATCH_MOTION);
     if (values[BAD] > 0.0 || !(spent[0] >= 0.0) || !(watch->overlap >= 0.0))
         fail(watch, WATCH_NOT_A_NUMBER);
+    if (values[ELEMENT] > 0.0)
+        fail(watch, WATCH_ELEMENT);
 }
 
 void watch_full(struct watch *watch, const char *what)
@@ -734,6 +750,12 @@ static void explain_others(enum watch_failure failure, const struct simulation *
         report_error("a force or energy at %s is beyond 1e18; check the units of the job",
                      when);
         break;
+    case WATCH_ELEMENT:
+        report_error(
+            "solid failed at %s: %s; lower the loads or speeds, make the mesh finer or "
+            "more regular, or time.step smaller",
+            when, what);
+        break;
     case WATCH_FINE:
     case WATCH_OVERLAP:
     case WATCH_STEP:
@@ -763,7 +785,7 @@ void watch_explain(const struct watch *watch, const struct simulation *sim)
     const char *appeared = find_appeared(sim);
     const bool starts_deep = too_deep && sim->step <= 1;
     const bool by_contacts = watch->failure != WATCH_FAR && watch->failure != WATCH_LEAVER &&
-                             watch->failure != WATCH_FULL;
+                             watch->failure != WATCH_FULL && watch->failure != WATCH_ELEMENT;
     /* Whatever rang: beyond the critical step the step is to blame. */
     if (appeared != NULL && deepest.overlap > 0.0 && watch->failure != WATCH_LEAVER)
         report_error("body '%s' appeared where spheres are, at %s: %s overlap by %.3g of a "

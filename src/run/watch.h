@@ -26,12 +26,13 @@ enum watch_failure {
     WATCH_NOT_A_NUMBER, /* a place or velocity is NaN or infinite */
     WATCH_STEP,         /* the step exceeds what the present contacts allow */
     WATCH_OVERLAP,      /* a contact overlaps too much */
-    WATCH_MOTION, /* a sphere or body moves too far in one step: contacts would be missed */
-    WATCH_FAR,    /* so far from the origin that rounding of places spoils contacts */
-    WATCH_LEAVER, /* a sphere left the domain */
-    WATCH_FULL,   /* an insertion finds no room, and is to stop then */
-    WATCH_ENERGY, /* the energy balance does not close */
-    WATCH_SUMS,   /* a total is beyond what exact sums hold */
+    WATCH_MOTION,  /* a sphere or body moves too far in one step: contacts would be missed */
+    WATCH_FAR,     /* so far from the origin that rounding of places spoils contacts */
+    WATCH_LEAVER,  /* a sphere left the domain */
+    WATCH_FULL,    /* an insertion finds no room, and is to stop then */
+    WATCH_ENERGY,  /* the energy balance does not close */
+    WATCH_SUMS,    /* a total is beyond what exact sums hold */
+    WATCH_ELEMENT, /* an element of a body that deforms has failed, or allows no such step */
 };
 
 /* Why a run stops before its end, with a checkpoint. */
@@ -77,6 +78,10 @@ void watch_clear(struct watch *watch);
 void watch_searched(struct watch *watch, const struct simulation *sim);
 /* Looks at bodies' motion, which the job prescribes, before the first step.  Collective. */
 void watch_bodies(struct watch *watch, const struct simulation *sim);
+
+/* Looks at what elements of bodies that deform allow of the step, before the first one.
+ * Collective. */
+void watch_elements(struct watch *watch, const struct simulation *sim);
 
 /* Looks at the motion of bodies that forces move, in the step just done.  The same on all
  * ranks. */

@@ -27,7 +27,7 @@
 
 static const char FORMAT[] = "tremie checkpoint";
 
-enum { SPHERES, CONTACTS, FACET_CONTACTS, N_TABLES };
+enum { SPHERES, CONTACTS, FACET_CONTACTS, N_KINDS, N_TABLES = N_KINDS + CHECKPOINT_MORE };
 
 static const struct field SUMS = {"sums",
                                   "1",
@@ -145,17 +145,36 @@ static void describe_facet_contacts(struct table *table, bool full, bool ledger)
     add_history(table, offsetof(struct facet_contact_record, history), full, ledger);
 }
 
+/* Rows of an id and fields, side by side. */
+static void describe_more(struct table *table, const struct checkpoint_more *more)
+{
+    static const struct field id = {"id", "1", "counted over all bodies", FIELD_INT64, 1, 0};
+    table_init(table, more->name, sizeof(int64_t), compare_spheres);
+    table_add_column(table, &id, 0);
+    for (int f = 0; f < more->n_fields; f++) {
+        table_add_column(table, &more->fields[f], table->record_size);
+        table->record_size += field_size(&more->fields[f]);
+    }
+}
+
+static int count_tables(const struct checkpoint *checkpoint)
+{
+    return N_KINDS + checkpoint->n_more;
+}
+
 static void tables_init(struct table tables[N_TABLES], const struct checkpoint *checkpoint)
 {
+    for (int k = 0; k < checkpoint->n_more; k++)
+        describe_more(&tables[N_KINDS + k], &checkpoint->more[k]);
     const bool full = checkpoint->full, ledger = checkpoint->ledger;
     describe_spheres(&tables[SPHERES], checkpoint->removals);
     describe_contacts(&tables[CONTACTS], full, ledger);
     describe_facet_contacts(&tables[FACET_CONTACTS], full, ledger);
 }
 
-static void tables_clear(struct table tables[N_TABLES])
+static void tables_clear(struct table tables[N_TABLES], const struct checkpoint *checkpoint)
 {
-    for (int k = 0; k < N_TABLES; k++)
+    for (int k = 0; k < count_tables(checkpoint); k++)
         table_clear(&tables[k]);
 }
 
@@ -212,17 +231,24 @@ static void collect_facet_contacts(struct table *table, const void *from, int64_
 static void tables_to_write(struct table tables[N_TABLES], const struct comm *comm,
                             const struct checkpoint *checkpoint)
 {
-    static void (*const collect[N_TABLES])(struct table *, const void *, int64_t, int64_t) = {
+    static void (*const collect[N_KINDS])(struct table *, const void *, int64_t, int64_t) = {
         collect_spheres, collect_contacts, collect_facet_contacts};
-    int64_t n_total[N_TABLES] = {checkpoint->spheres->n_owned, checkpoint->n_contacts,
-                                 checkpoint->n_facet_contacts};
-    comm_sum_int(comm, n_total, N_TABLES);
+    int64_t n_total[N_KINDS] = {checkpoint->spheres->n_owned, checkpoint->n_contacts,
+                                checkpoint->n_facet_contacts};
+    comm_sum_int(comm, n_total, N_KINDS);
     tables_init(tables, checkpoint);
-    for (int k = 0; k < N_TABLES; k++) {
+    for (int k = 0; k < N_KINDS; k++) {
         tables[k].collect = collect[k];
         tables[k].from = checkpoint;
         tables[k].n_ids = checkpoint->next_id;
         tables[k].n_total = n_total[k];
+    }
+    for (int k = 0; k < checkpoint->n_more; k++) {
+        const struct checkpoint_more *more = &checkpoint->more[k];
+        struct table *table = &tables[N_KINDS + k];
+        table->collect = more->collect;
+        table->from = more->from;
+        table->n_ids = table->n_total = more->n_ids;
     }
 }
 
@@ -302,7 +328,7 @@ static void put_all(struct h5 *h5, const void *from)
     put_monitors(h5, content->checkpoint->n_monitors, content->totals);
     notes_put(&content->checkpoint->notes, h5);
     h5_group(h5, "/checksums");
-    for (int k = 0; k < N_TABLES; k++)
+    for (int k = 0; k < count_tables(content->checkpoint); k++)
         table_declare(&content->tables[k], h5);
 }
 
@@ -337,11 +363,11 @@ int checkpoint_write(const struct comm *comm, const char *path,
         .lay_out = put_all,
         .content = &content,
         .size = content_size(checkpoint),
-        .n_tables = N_TABLES,
+        .n_tables = count_tables(checkpoint),
         .tables = tables,
     };
     const int status = shared_file_write(comm, &file);
-    tables_clear(tables);
+    tables_clear(tables, checkpoint);
     free(totals);
     return status;
 }
@@ -449,7 +475,7 @@ static void share_header(const struct comm *comm, struct checkpoint *checkpoint,
     checkpoint->step = numbers[0];
     checkpoint->next_id = numbers[1];
     checkpoint->n_monitors = (int)numbers[2];
-    for (int k = 0; k < N_TABLES; k++)
+    for (int k = 0; k < N_KINDS; k++)
         tables[k].n_total = numbers[3 + k];
     share_text(comm, &checkpoint->title);
     share_text(comm, &checkpoint->job_text);
@@ -470,13 +496,20 @@ static void share_header(const struct comm *comm, struct checkpoint *checkpoint,
 static char *read_header(const char *path, struct checkpoint *checkpoint,
                          struct table tables[N_TABLES])
 {
-    static const char *const counts[N_TABLES] = {"n_spheres", "n_contacts", "n_facet_contacts"};
+    static const char *const counts[N_KINDS] = {"n_spheres", "n_contacts", "n_facet_contacts"};
     struct h5 h5;
     h5_open(&h5, path);
     get_header(&h5, checkpoint);
     get_monitors(&h5, checkpoint);
     notes_get(&checkpoint->notes, &h5);
-    for (int k = 0; k < N_TABLES; k++) {
+    for (int k = 0; k < checkpoint->n_more; k++) {
+        struct table *table = &tables[N_KINDS + k];
+        table_measure(table, &h5);
+        if (table->n_total != checkpoint->more[k].n_ids)
+            h5_fail(&h5, "/%s: %lld rows in place of %lld", table->name,
+                    (long long)table->n_total, (long long)checkpoint->more[k].n_ids);
+    }
+    for (int k = 0; k < N_KINDS; k++) {
         table_measure(&tables[k], &h5);
         if (h5_get_int(&h5, "/run", counts[k]) != tables[k].n_total)
             h5_fail(&h5, "/%s: the number of rows is not %s", tables[k].name, counts[k]);
@@ -516,8 +549,14 @@ static char *read_rows(const struct comm *comm, const char *path, struct checkpo
 {
     struct h5 h5;
     h5_open(&h5, path);
-    for (int k = 0; k < N_TABLES; k++)
+    for (int k = 0; k < N_KINDS; k++)
         table_read(&tables[k], &h5, comm, checkpoint->next_id);
+    const struct comm alone = {.mpi = MPI_COMM_SELF, .rank = 0, .n_ranks = 1};
+    for (int k = 0; k < checkpoint->n_more; k++) {
+        struct table *table = &tables[N_KINDS + k];
+        table->n_total = checkpoint->more[k].n_ids;
+        table_read(table, &h5, &alone, table->n_total);
+    }
     h5_close(&h5);
     return h5.why;
 }
@@ -531,6 +570,12 @@ static void hand_over(struct checkpoint *checkpoint, struct table tables[N_TABLE
     checkpoint->facet_contacts = (void *)tables[FACET_CONTACTS].records;
     tables[CONTACTS].records = NULL;
     tables[FACET_CONTACTS].records = NULL;
+    for (int k = 0; k < checkpoint->n_more; k++) {
+        struct table *table = &tables[N_KINDS + k];
+        checkpoint->more[k].record_size = table->record_size;
+        checkpoint->more[k].records = table->records;
+        table->records = NULL;
+    }
 }
 
 static void place_spheres(struct spheres *spheres, struct table *table)
@@ -570,7 +615,7 @@ int checkpoint_read(const struct comm *comm, const char *path, struct checkpoint
     struct table tables[N_TABLES];
     tables_init(tables, checkpoint);
     char *why = read_file(comm, path, checkpoint, tables);
-    tables_clear(tables);
+    tables_clear(tables, checkpoint);
     if (why == NULL)
         return REPORT_FINISHED;
     report_error("cannot use the checkpoint %s: %s", path, why);
@@ -589,6 +634,8 @@ void checkpoint_clear(struct checkpoint *checkpoint)
     free(checkpoint->contacts);
     free(checkpoint->facet_contacts);
     free(checkpoint->monitors);
+    for (int k = 0; k < checkpoint->n_more; k++)
+        free(checkpoint->more[k].records);
     notes_clear(&checkpoint->notes);
     *checkpoint = (struct checkpoint){.spheres = spheres};
 }

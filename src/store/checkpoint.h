@@ -13,6 +13,7 @@
  *                    twisting_force, sliding; touching contacts, first_id < second_id, sorted
  *                    by (first_id, second_id)
  *   /facet_contacts/ id, body, feature, the same of their history; sorted
+ *   /nodes/, /elements/  of a job with bodies that deform: their fields (solid/solid.h), by id
  *   /monitors/       names (one a line), sums (n x 5 int64: struct exact_sum as totals)
  *   /state/          where there is any: small named numbers (store/notes.h)
  *   /checksums/      under the same paths: CRC-32 (as zlib's) of each block of 256 rows; job,
@@ -33,6 +34,7 @@
 #include <stdint.h>
 
 #include "base/exact_sum.h"
+#include "base/field.h"
 #include "contact/contact_set.h"
 #include "contact/facet_contact.h"
 #include "store/notes.h"
@@ -40,6 +42,7 @@
 struct comm;
 struct run_folder;
 struct spheres;
+struct table;
 
 enum { CHECKPOINT_FORMAT_VERSION = 4, CHECKPOINT_NAME_SIZE = 64 };
 
@@ -57,6 +60,23 @@ struct checkpoint_contacts {
     int (*facets)(const void *from, int64_t begin, int64_t end,
                   struct facet_contact_record **records);
 };
+
+/* A further table, of what a job has besides spheres: rows of an id and fields, in /NAME.  Reading
+ * gives all rows, in ascending order of ids 0 .. n_ids - 1, to every rank. */
+struct checkpoint_more {
+    const char *name;
+    int n_fields;
+    const struct field *fields;
+    int64_t n_ids;
+    /* To write: as in store/table.h; each row on exactly one rank. */
+    void (*collect)(struct table *table, const void *from, int64_t begin, int64_t end);
+    const void *from;
+    /* As read: an int64 id, then the fields, without gaps. */
+    size_t record_size;
+    unsigned char *records;
+};
+
+enum { CHECKPOINT_MORE = 2 /* at most */ };
 
 struct checkpoint {
     const struct run_folder *folder; /* the run's that writes it, NULL: nobody's */
@@ -76,6 +96,8 @@ struct checkpoint {
     int n_monitors; /* the same names on all ranks; sums are this rank's shares */
     struct checkpoint_monitor *monitors;
     struct notes notes; /* the same on all ranks */
+    int n_more;         /* tables: set before reading, too */
+    struct checkpoint_more more[CHECKPOINT_MORE];
 };
 
 /*
