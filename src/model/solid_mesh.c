@@ -1,6 +1,8 @@
 /* See solid_mesh.h.  Sides find each other through a table hashed by their nodes, so that the
- * work grows with their number however a file joins them.  A side's place in it is not far from
- * that of its least node: most meshes are numbered so that neighbours then meet in the cache. */
+ * work grows with their number however a file joins them.  A side's place in it is not far
+ * from that of its least node: most meshes are numbered so that neighbours then meet in the
+ * cache.
+ */
 #include "model/solid_mesh.h"
 
 #include <stdbool.h>
