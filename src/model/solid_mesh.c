@@ -1,5 +1,8 @@
 /* See solid_mesh.h.  Sides find each other through a table hashed by their nodes, so that the
- * work grows with their number however a file joins them. */
+ * work grows with their number however a file joins them.  A side's place in it is not far
+ * from that of its least node: most meshes are numbered so that neighbours then meet in the
+ * cache.
+ */
 #include "model/solid_mesh.h"
 
 #include <stdbool.h>
@@ -29,7 +32,7 @@ int solid_mesh_side_nodes(const int element[8], int side, int nodes[4])
 
 /* All sides of all elements, by their nodes. */
 struct side_table {
-    int n_heads;
+    int n_heads, per_node;
     int *heads, *next; /* numbers of sides; -1: none */
 };
 
@@ -45,13 +48,17 @@ static void sort_four(const int nodes[4], int sorted[4])
         }
 }
 
+enum { SPREAD = 4096 };
+
 static int head_of(const struct side_table *table, const int sorted[4])
 {
     uint64_t hash = 0;
     for (int k = 0; k < 4; k++)
         hash = (hash ^ (uint64_t)(uint32_t)sorted[k]) * UINT64_C(0x9e3779b97f4a7c15) ^
                (hash >> 29);
-    return (int)((hash >> 20) % (uint64_t)table->n_heads);
+    const int least = sorted[0] >= 0 ? sorted[0] : sorted[1];
+    const uint64_t place = (uint64_t)least * (uint64_t)table->per_node + (hash >> 20) % SPREAD;
+    return (int)(place % (uint64_t)table->n_heads);
 }
 
 static void sorted_nodes(const struct solid_mesh *mesh, int number, int sorted[4])
@@ -66,6 +73,9 @@ static void table_build(struct side_table *table, const struct solid_mesh *mesh)
 {
     const size_t n = (size_t)mesh->n_elements * SOLID_MESH_SIDES;
     table->n_heads = (int)(n / 2 + 1);
+    table->per_node = mesh->n_nodes > 0 && mesh->n_nodes < table->n_heads
+                          ? table->n_heads / mesh->n_nodes
+                          : 1;
     table->heads = array_allocate((size_t)table->n_heads, sizeof *table->heads);
     table->next = array_allocate(n, sizeof *table->next);
     memset(table->heads, -1, (size_t)table->n_heads * sizeof *table->heads);
