@@ -82,7 +82,7 @@ TEST(parts_give_the_same_bits)
                 mine[i] = (solid[0].reference[i][0] > 1.4) == (s == 1);
             solid_assign(&solid[s], mine);
         }
-        const int n_all = solid[0].lists[shape].n, n_part = solid[1].lists[shape].n;
+        const int n_all = solid[0].n_listed, n_part = solid[1].n_listed;
         EXPECT(n_part < n_all && n_part > 0);
         for (int step = 0; step < 20; step++) {
             for (int s = 0; s < 3; s++) {
