@@ -259,7 +259,7 @@ int solid_corner_places(const struct solid *solid, int element,
     return n;
 }
 
-/* ------------------------------------------------------------------------------- who computes */
+/* ------------------------------------------------------------------- who computes */
 
 static bool is_computed(const struct solid *solid, int element)
 {

@@ -75,7 +75,8 @@ struct solid_list {
     int first, n; /* in `listed`; padded */
 };
 
-/* Elements whose forces are held before they are added to nodes: as many as stay in the cache. */
+/* Elements whose forces are held before they are added to nodes: as many as stay in the
+ * cache. */
 enum { SOLID_PART = 512 };
 
 struct solid {

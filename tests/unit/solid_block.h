@@ -20,7 +20,8 @@ static inline int solid_block_node(const struct solid_block *block, int i, int j
     return i + (block->n[0] + 1) * (j + (block->n[1] + 1) * k);
 }
 
-/* Six tetrahedra about the diagonal of a cell, the same in every cell, so that neighbours fit. */
+/* Six tetrahedra about the diagonal of a cell, the same in every cell, so that neighbours
+ * fit. */
 static inline void solid_block_split(const int corner[8],
                                      int (*elements)[SOLID_ELEMENT_CORNERS])
 {

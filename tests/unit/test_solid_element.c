@@ -90,7 +90,7 @@ TEST(gradients_are_those_of_the_volume)
     }
 }
 
-/* ------------------------------------------------------------------ the kernel, formula by formula */
+/* --------------------------------------------------- the kernel, formula by formula */
 
 /* Elements that share no nodes, moved at random. */
 struct scene {
@@ -357,7 +357,7 @@ TEST(all_instruction_sets_give_the_same_bits)
     }
 }
 
-/* ------------------------------------------------------------------------------- plastic flow */
+/* ------------------------------------------------------------------- plastic flow */
 
 /* Shears or stretches element 0 of a cube of side 1 at a constant rate. */
 static void deform(struct scene *scene, double rate[3][3], int n_steps)
@@ -449,7 +449,7 @@ TEST(heat_of_flow)
     EXPECT_NEAR(scene.state[0].plastic_work / (20.0 * p + 100.0 * p * p), 1.0, 1e-4);
 }
 
-/* ------------------------------------------------------------------------------- failures, limits */
+/* --------------------------------------------------------------- failures, limits */
 
 TEST(failures_are_noticed)
 {
