@@ -56,6 +56,9 @@ case_shared := $(patsubst %.c,$(BUILD)/%.o,\
     $(filter-out $(case_sources),$(sort $(wildcard tests/verification/*.c))))
 verification_cases := $(patsubst tests/verification/%.c,$(BUILD)/tests/%,$(case_sources))
 
+# What elements of solids cost, a program of its own.
+element_bench := $(BUILD)/tests/bench/elements.o
+
 # The charts' own program: charts/*.c and what cases of verification share.
 chart_objects := $(patsubst %.c,$(BUILD)/%.o,$(sort $(wildcard charts/*.c)))
 
@@ -75,11 +78,12 @@ rules := Makefile $(wildcard config/compiler/*.mk)
 all_objects := $(library_objects) $(kernel_objects) $(main:%.c=$(BUILD)/%.o) $(tool_shared) \
     $(tool_sources:%.c=$(BUILD)/%.o) $(unit_sources:%.c=$(BUILD)/%.o) $(case_sources:%.c=$(BUILD)/%.o) \
     $(case_shared) $(limit_sources:%.c=$(BUILD)/%.o) $(limit_shared) $(chart_objects) $(fuzz_objects) \
-    $(flavour_objects)
+    $(element_bench) $(flavour_objects)
 
 # --------------------------------------------------------------------------------------------- goals
 
-.PHONY: all hopper test soak fuzzers verify stability bench bench-peers charts-quick lint help install clean unit_tests \
+.PHONY: all hopper test soak fuzzers verify stability bench bench-peers bench-elements charts-quick lint help install \
+    clean unit_tests \
     verification_cases stability_cases
 .DEFAULT_GOAL := all
 
@@ -131,6 +135,12 @@ bench-peers:
 	@$(MAKE) --no-print-directory all
 	@BIN='$(BIN)' tests/bench/run --peers
 
+##  make bench-elements  measure what elements of solids cost on one core, for each instruction set
+bench-elements:
+	@config/setup run
+	@$(MAKE) --no-print-directory $(BUILD)/tests/elements
+	@$(BUILD)/tests/elements
+
 ##  make charts-quick measure speed against accuracy: tables and charts of charts/, some ten minutes
 charts-quick:
 	@config/setup test
@@ -175,7 +185,7 @@ stability_cases: $(stability_cases)
 
 $(library_objects) $(tool_shared) $(main:%.c=$(BUILD)/%.o) $(tool_sources:%.c=$(BUILD)/%.o) \
 $(unit_sources:%.c=$(BUILD)/%.o) $(case_sources:%.c=$(BUILD)/%.o) $(case_shared) \
-$(limit_sources:%.c=$(BUILD)/%.o) $(limit_shared) $(chart_objects) $(fuzz_objects): \
+$(limit_sources:%.c=$(BUILD)/%.o) $(limit_shared) $(chart_objects) $(fuzz_objects) $(element_bench): \
 $(BUILD)/%.o: %.c $(rules)
 	@mkdir -p $(@D)
 	$(call say,compile,$<)$(CC) $(CPPFLAGS) $(CFLAGS) $(march) -MMD -MP -c -o $@ $<
@@ -221,6 +231,10 @@ $(verification_cases): $(BUILD)/tests/%: $(BUILD)/tests/verification/%.o $(case_
 	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(library) $(LDLIBS)
 
 $(BUILD)/charts/impacts: $(chart_objects) $(case_shared) $(flavour_objects) $(library)
+	@mkdir -p $(@D)
+	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
+
+$(BUILD)/tests/elements: $(element_bench) $(flavour_objects) $(library)
 	@mkdir -p $(@D)
 	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $^ $(LDLIBS)
 

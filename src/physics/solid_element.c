@@ -70,11 +70,11 @@ double solid_element_volume(enum solid_element_shape shape, double x[][3])
 
 /* ------------------------------------------------------------------------------- the step */
 
-/* The largest eigenvalue of a symmetric matrix without negative ones, or up to half a per cent
- * more: the 256th root of the trace of its 256th power. */
+/* The largest eigenvalue of a symmetric matrix without negative ones, or up to three
+ * ten-thousandths more: the 4096th root of the trace of its 4096th power. */
 static double largest_eigenvalue(double g[3][3])
 {
-    enum { SQUARINGS = 8 };
+    enum { SQUARINGS = 12 };
     double root = 1.0, scale[SQUARINGS + 1];
     for (int round = 0; round <= SQUARINGS; round++) {
         scale[round] = g[0][0] + g[1][1] + g[2][2];

@@ -74,8 +74,8 @@ struct solid_element_material {
  * n elements of one shape and material, n a multiple of SOLID_ELEMENT_PAD; padding names an
  * element that exists for that alone.  No element twice, but for that one.
  *
- * Read: nodes, corners, mass.  Brought to the present: state.  Written: force, of the corners
- * that the shape has.
+ * Read: nodes, corners, mass.  Brought to the present: state.  Written: forces, in the order of
+ * the list, of the corners that the shape has.
  */
 struct solid_element_work {
     int n;
@@ -84,7 +84,7 @@ struct solid_element_work {
     int (*corners)[SOLID_ELEMENT_CORNERS];
     const double *mass; /* of each element [kg] */
     struct solid_element_state *state;
-    struct solid_element_force *force;
+    struct solid_element_force *force; /* n */
     const struct solid_element_material *material;
     double dt;    /* [s] */
     double since; /* dt, or 0 where stress is already that of x(n): at the start [s] */

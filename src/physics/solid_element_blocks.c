@@ -108,9 +108,8 @@ LANES_INLINE void motion_gradient(int n_corners, lanes moved[][3], lanes b[][3],
 }
 
 /* Writes S b of each corner, and what is given besides, for pairs of corners.  (12.4) */
-LANES_INLINE lanes give_forces(const struct solid_element_work *work, const int *elements,
-                               int n_corners, lanes stress[3][3], lanes b[][3],
-                               lanes besides[][3])
+LANES_INLINE lanes give_forces(struct solid_element_force *force_at, int n_corners,
+                               lanes stress[3][3], lanes b[][3], lanes besides[][3])
 {
     lanes odd = lanes_all(0.0);
 #pragma GCC unroll 4
@@ -129,7 +128,7 @@ LANES_INLINE lanes give_forces(const struct solid_element_work *work, const int 
         }
 #pragma GCC unroll 8
         for (int l = 0; l < WIDTH; l++)
-            at[l] = work->force[elements[l]].corner[c];
+            at[l] = force_at[l].corner[c];
         give_rows(at, row);
     }
     return odd;
@@ -254,7 +253,7 @@ LANES_INLINE lanes_mask not_sound(lanes volume, lanes middle_volume, lanes odd)
 }
 
 LANES_INLINE lanes_mask hexahedra(const struct solid_element_work *work, const int *elements,
-                                  bool plastic)
+                                  struct solid_element_force *force_at, bool plastic)
 {
     lanes x[8][3], moved[8][3], middle[8][3], b[8][3], besides[8][3];
     lanes gradient[3][3], turn[3][3], acting[3][MODES], stress[3][3];
@@ -279,12 +278,12 @@ LANES_INLINE lanes_mask hexahedra(const struct solid_element_work *work, const i
     give_state(work, elements, 1, first);
     give_state(work, elements, 2, second);
     hourglass_forces(acting, x, volume, stress, besides);
-    const lanes odd = give_forces(work, elements, 8, stress, b, besides);
+    const lanes odd = give_forces(force_at, 8, stress, b, besides);
     return not_sound(volume, middle_volume, odd);
 }
 
 LANES_INLINE lanes_mask tetrahedra(const struct solid_element_work *work, const int *elements,
-                                   bool plastic)
+                                   struct solid_element_force *force_at, bool plastic)
 {
     lanes x[4][3], moved[4][3], middle[4][3], b[4][3];
     lanes gradient[3][3], turn[3][3], stress[3][3];
@@ -303,7 +302,7 @@ LANES_INLINE lanes_mask tetrahedra(const struct solid_element_work *work, const 
     second[7] = volume;
     give_state(work, elements, 0, own);
     give_state(work, elements, 2, second);
-    const lanes odd = give_forces(work, elements, 4, stress, b, NULL);
+    const lanes odd = give_forces(force_at, 4, stress, b, NULL);
     return not_sound(volume, middle_volume, odd);
 }
 
@@ -313,8 +312,9 @@ LANES_INLINE void all_blocks(struct solid_element_work *work, enum solid_element
     const struct solid_element_work own = *work, *w = &own;
     lanes_mask failed = {0};
     for (int k = 0; k < w->n; k += WIDTH)
-        failed |= shape == SOLID_ELEMENT_HEXAHEDRON ? hexahedra(w, w->elements + k, plastic)
-                                                    : tetrahedra(w, w->elements + k, plastic);
+        failed |= shape == SOLID_ELEMENT_HEXAHEDRON
+                      ? hexahedra(w, w->elements + k, w->force + k, plastic)
+                      : tetrahedra(w, w->elements + k, w->force + k, plastic);
     work->failed = lanes_any(failed);
 }
 

@@ -1,6 +1,6 @@
 /*
  * Volume of a hexahedron and of a tetrahedron, and its gradient with respect to the corners:
- * the mean gradient operator of one-point elements (THEORY.md, 12.1).
+ * the mean gradient operator of one-point elements (THEORY.md, section 12).
  *
  * The exact volume of the hexahedron with bilinear faces is three triple products of
  * differences of corners (Grandy, Efficient computation of volume of hexahedral cells,
@@ -35,8 +35,8 @@ LANES_INLINE lanes solid_gradient_dot(const lanes a[3], const lanes b[3])
     return (a[0] * b[0] + a[1] * b[1]) + a[2] * b[2];
 }
 
-/* a = (x_p - x_q) + (x_r - x_s), b = x_t - x_u, c = x_v - x_w: the triple product a . b x c, and
- * its derivatives with respect to a, b, c. */
+/* a = (x_p - x_q) + (x_r - x_s), b = x_t - x_u, c = x_v - x_w: the triple product a . b x c,
+ * and its derivatives with respect to a, b, c. */
 LANES_INLINE lanes solid_gradient_triple(lanes x[8][3], const int corner[8], lanes by_a[3],
                                          lanes by_b[3], lanes by_c[3])
 {

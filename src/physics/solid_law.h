@@ -1,7 +1,7 @@
 /*
  * What stress does while an element moves: it turns along (Hughes and Winget, Int. J. Numer.
  * Meth. Eng. 15, 1980, 1862), and changes by the elastic law and plastic flow with isotropic
- * hardening (radial return).  THEORY.md, 12.3 and 12.4.
+ * hardening (radial return).  THEORY.md, (12.5), (12.7), (12.8).
  *
  * Written in lanes (physics/lanes.h).
  */
@@ -85,7 +85,7 @@ LANES_INLINE void solid_law_return(const struct solid_element_material *m, lanes
     const lanes flow = solid_law_flow(m, own[6], q);
     const lanes_mask flows = flow > lanes_all(0.0);
     const lanes drop = lanes_keep(flows, flow * lanes_all(3.0 * m->mu) / q);
-    /* Heat: mean stress of the step times flow 3/2 s/q, of which the direction is the trial's. */
+    /* Heat: mean stress of the step times flow 3/2 s/q, in the direction of the trial. */
     const lanes along = solid_law_product(old, deviator);
     const lanes heat = (along + (lanes_all(1.0) - drop) * q * q * lanes_all(2.0 / 3.0)) *
                        (flow * lanes_all(0.75)) / q;

@@ -1,6 +1,8 @@
 /*
- * See solid.h.  Elements are computed in lists by shape and material, whose results lie by
- * element; nodes then fetch them in ascending order of elements.
+ * See solid.h.  Elements are computed part by part of some hundred, in each in lists by shape
+ * and material.  A part's forces are added to its nodes in ascending order of elements while
+ * they are in the cache, before the next part is computed; so a node's sum is in that order
+ * too, and forces of elements are never kept.
  */
 #include "solid/solid.h"
 
@@ -111,7 +113,7 @@ static void build_elements(struct solid *solid, const struct solid_parts *mesh)
     solid->alive = array_allocate(n, sizeof *solid->alive);
     solid->element_mass = array_allocate(padded, sizeof *solid->element_mass);
     solid->state = array_allocate_rows(padded, sizeof *solid->state);
-    solid->force = array_allocate_rows(padded, sizeof *solid->force);
+    solid->slot = array_allocate(n, sizeof *solid->slot);
     memcpy(solid->shape, mesh->shapes, n * sizeof *solid->shape);
     memcpy(solid->corners, mesh->corners, n * sizeof *solid->corners);
     if (mesh->materials != NULL)
@@ -162,12 +164,6 @@ void solid_create(struct solid *solid, const struct solid_parts *mesh, int n_mat
     solid->materials = array_allocate((size_t)n_materials, sizeof *solid->materials);
     for (int m = 0; m < n_materials; m++)
         solid->materials[m] = build_material(&materials[m]);
-    solid->n_lists = n_materials * SOLID_ELEMENT_N_SHAPES;
-    solid->lists = array_allocate((size_t)solid->n_lists, sizeof *solid->lists);
-    for (int k = 0; k < solid->n_lists; k++) {
-        solid->lists[k].shape = (enum solid_element_shape)(k % SOLID_ELEMENT_N_SHAPES);
-        solid->lists[k].material = k / SOLID_ELEMENT_N_SHAPES;
-    }
     build_nodes(solid, mesh);
     build_elements(solid, mesh);
     build_mass(solid);
@@ -180,8 +176,6 @@ void solid_destroy(struct solid *solid)
 {
     for (int m = 0; m < solid->n_materials; m++)
         free((void *)(uintptr_t)solid->materials[m].yield);
-    for (int k = 0; k < solid->n_lists; k++)
-        free(solid->lists[k].elements);
     solid_supports_clear(&solid->supports);
     solid_loads_clear(&solid->loads);
     free(solid->reference);
@@ -198,11 +192,13 @@ void solid_destroy(struct solid *solid)
     free(solid->alive);
     free(solid->element_mass);
     free(solid->state);
-    free(solid->force);
     free(solid->first);
     free(solid->meets);
     free(solid->materials);
     free(solid->lists);
+    free(solid->listed);
+    free(solid->slot);
+    free(solid->force);
     *solid = (struct solid){0};
 }
 
@@ -263,7 +259,7 @@ int solid_corner_places(const struct solid *solid, int element,
     return n;
 }
 
-/* ------------------------------------------------------------------------------- who computes */
+/* ------------------------------------------------------------------- who computes */
 
 static bool is_computed(const struct solid *solid, int element)
 {
@@ -275,28 +271,56 @@ static bool is_computed(const struct solid *solid, int element)
     return false;
 }
 
-static void list_add(struct solid_list *list, int element)
+/* Elements of one shape and material from `begin` to `end`, if any are computed here. */
+static void list_part(struct solid *solid, int part, enum solid_element_shape shape,
+                      int material, int *n_slots)
 {
-    ARRAY_GROW(list->elements, list->n + 1, list->capacity);
-    list->elements[list->n++] = element;
+    const int begin = part * SOLID_PART, end = begin + SOLID_PART;
+    struct solid_list list = {part, shape, material, solid->n_listed, 0};
+    for (int e = begin; e < end && e < solid->n_elements; e++) {
+        if (solid->shape[e] != shape || solid->material[e] != material ||
+            !is_computed(solid, e))
+            continue;
+        solid->slot[e] = *n_slots + list.n++;
+        ARRAY_GROW(solid->listed, solid->n_listed + 1, solid->listed_capacity);
+        solid->listed[solid->n_listed++] = e;
+    }
+    if (list.n == 0)
+        return;
+    for (; list.n % SOLID_ELEMENT_PAD != 0; list.n++) {
+        ARRAY_GROW(solid->listed, solid->n_listed + 1, solid->listed_capacity);
+        solid->listed[solid->n_listed++] = solid->n_elements;
+    }
+    *n_slots += list.n;
+    ARRAY_GROW(solid->lists, solid->n_lists + 1, solid->lists_capacity);
+    solid->lists[solid->n_lists++] = list;
+}
+
+static int n_parts(const struct solid *solid)
+{
+    return (solid->n_elements + SOLID_PART - 1) / SOLID_PART;
 }
 
 void solid_assign(struct solid *solid, const bool *moves)
 {
+    int slots_most = 0;
     for (int i = 0; i < solid->n_nodes; i++)
         solid->moves[i] = moves == NULL || moves[i];
-    for (int k = 0; k < solid->n_lists; k++)
-        solid->lists[k].n = 0;
-    for (int e = 0; e < solid->n_elements; e++) {
-        const int k = solid->material[e] * SOLID_ELEMENT_N_SHAPES + (int)solid->shape[e];
-        if (is_computed(solid, e))
-            list_add(&solid->lists[k], e);
-        else
-            solid->force[e] = (struct solid_element_force){0};
+    for (int e = 0; e < solid->n_elements; e++)
+        solid->slot[e] = -1;
+    solid->n_lists = solid->n_listed = 0;
+    for (int part = 0; part < n_parts(solid); part++) {
+        int n_slots = 0;
+        for (int material = 0; material < solid->n_materials; material++)
+            for (int shape = 0; shape < SOLID_ELEMENT_N_SHAPES; shape++)
+                list_part(solid, part, (enum solid_element_shape)shape, material, &n_slots);
+        slots_most = n_slots > slots_most ? n_slots : slots_most;
     }
-    for (int k = 0; k < solid->n_lists; k++)
-        while (solid->lists[k].n % SOLID_ELEMENT_PAD != 0)
-            list_add(&solid->lists[k], solid->n_elements);
+    if (slots_most > solid->force_capacity) {
+        free(solid->force);
+        solid->force = array_allocate_rows((size_t)slots_most, sizeof *solid->force);
+        solid->force_capacity = slots_most;
+    }
 }
 
 void solid_kill(struct solid *solid, int element)
@@ -313,72 +337,113 @@ bool solid_counts(const struct solid *solid, int element)
 
 /* ------------------------------------------------------------------------------- the step */
 
-/* What elements do to a node, in ascending order of elements. */
-static void assemble(const struct solid *solid, int i, double force[3])
+/* Adds what the elements of a part do to their nodes, in ascending order of elements. */
+static void add_part(struct solid *solid, int part)
 {
-    double sum[3] = {0.0, 0.0, 0.0};
-    for (int k = solid->first[i]; k < solid->first[i + 1]; k++) {
-        const double *corner = &solid->force->corner[0][0] + 4 * (ptrdiff_t)solid->meets[k];
-        for (int d = 0; d < 3; d++)
-            sum[d] -= corner[d];
+    const int begin = part * SOLID_PART, end = begin + SOLID_PART;
+    for (int e = begin; e < end && e < solid->n_elements; e++) {
+        if (solid->slot[e] < 0)
+            continue;
+        const struct solid_element_force *force = &solid->force[solid->slot[e]];
+        const int n = solid_element_corners(solid->shape[e]);
+        for (int c = 0; c < n; c++) {
+            double *sum = solid->internal[solid->corners[e][c]];
+            for (int d = 0; d < 3; d++)
+                sum[d] -= force->corner[c][d];
+        }
     }
-    memcpy(force, sum, sizeof sum);
+}
+
+/* Forces of the lists of one part; returns the first list behind it. */
+static int compute_part(struct solid *solid, int k, int64_t step, double dt, bool *failed)
+{
+    const int part = solid->lists[k].part;
+    struct solid_element_force *force = solid->force;
+    for (; k < solid->n_lists && solid->lists[k].part == part; k++) {
+        const struct solid_list *list = &solid->lists[k];
+        struct solid_element_work work = {.n = list->n,
+                                          .elements = solid->listed + list->first,
+                                          .nodes = solid->node,
+                                          .corners = solid->corners,
+                                          .mass = solid->element_mass,
+                                          .state = solid->state,
+                                          .force = force,
+                                          .material = &solid->materials[list->material],
+                                          .dt = dt,
+                                          .since = step > 0 ? dt : 0.0};
+        solid->kernel.apply[list->shape](&work);
+        *failed |= work.failed;
+        force += list->n;
+    }
+    add_part(solid, part);
+    return k;
 }
 
 bool solid_forces(struct solid *solid, int64_t step, double dt)
 {
     bool failed = false;
-    for (int k = 0; k < solid->n_lists; k++) {
-        const struct solid_list *list = &solid->lists[k];
-        struct solid_element_work work = {.n = list->n,
-                                          .elements = list->elements,
-                                          .nodes = solid->node,
-                                          .corners = solid->corners,
-                                          .mass = solid->element_mass,
-                                          .state = solid->state,
-                                          .force = solid->force,
-                                          .material = &solid->materials[list->material],
-                                          .dt = dt,
-                                          .since = step > 0 ? dt : 0.0};
-        solid->kernel.apply[list->shape](&work);
-        failed |= work.failed;
-    }
-    for (int i = 0; i < solid->n_nodes; i++)
-        if (solid->moves[i]) {
-            assemble(solid, i, solid->internal[i]);
-            memset(solid->external[i], 0, sizeof solid->external[i]);
-        }
+    memset(solid->internal, 0, (size_t)solid->n_nodes * sizeof *solid->internal);
+    memset(solid->external, 0, (size_t)solid->n_nodes * sizeof *solid->external);
+    for (int k = 0; k < solid->n_lists;)
+        k = compute_part(solid, k, step, dt, &failed);
     solid_loads_apply(solid, (double)step * dt, solid->external);
     return !failed;
 }
 
-/* Velocities as in (5.3); of what is held, those that lead to where it is.  (12.15) */
-struct solid_advance solid_advance(const struct solid *solid, int i, double dt)
+/* What is the same for all nodes: factors of (5.3). */
+struct pace {
+    double dt, keep, kick;
+};
+
+static struct pace pace_of(const struct solid *solid, double dt)
 {
-    const double half = 0.5 * solid->damping * dt, mass = solid->mass[i];
-    const double push = 1.0 / (1.0 + half), keep = (1.0 - half) / (1.0 + half);
+    const double half = 0.5 * solid->damping * dt, push = 1.0 / (1.0 + half);
+    return (struct pace){dt, (1.0 - half) * push, push * dt};
+}
+
+/* Velocities of what is held lead to where it is.  (12.15) */
+static void hold(const struct solid *solid, int i, double dt, const double force[3],
+                 struct solid_advance *advance)
+{
+    const int *held = solid->supports.of_node[i];
     const double *x = solid_place(solid, i), *v = solid_velocity(solid, i);
-    struct solid_advance advance;
+    if (held[0] < 0 && held[1] < 0 && held[2] < 0)
+        return;
+    solid_supports_place(&solid->supports, i, solid->reference[i], advance->place);
     for (int k = 0; k < 3; k++) {
-        const double force =
-            (solid->internal[i][k] + solid->external[i][k]) + solid->contact[i][k];
-        advance.velocity[k] = v[k] * keep + push * dt * (force / mass + solid->gravity[k]);
-        advance.place[k] = x[k] + dt * advance.velocity[k];
+        if (held[k] < 0)
+            continue;
+        advance->velocity[k] = (advance->place[k] - x[k]) / dt;
+        advance->support[k] =
+            solid->mass[i] *
+                ((advance->velocity[k] - v[k]) / dt +
+                 solid->damping * (0.5 * (advance->velocity[k] + v[k])) - solid->gravity[k]) -
+            force[k];
+    }
+}
+
+static struct solid_advance advance_at(const struct solid *solid, int i,
+                                       const struct pace *pace)
+{
+    const double *x = solid_place(solid, i), *v = solid_velocity(solid, i);
+    const double per_mass = 1.0 / solid->mass[i];
+    struct solid_advance advance;
+    double force[3];
+    for (int k = 0; k < 3; k++) {
+        force[k] = (solid->internal[i][k] + solid->external[i][k]) + solid->contact[i][k];
+        advance.velocity[k] =
+            v[k] * pace->keep + pace->kick * (force[k] * per_mass + solid->gravity[k]);
+        advance.place[k] = x[k] + pace->dt * advance.velocity[k];
         advance.support[k] = 0.0;
     }
-    solid_supports_place(&solid->supports, i, solid->reference[i], advance.place);
-    for (int k = 0; k < 3; k++) {
-        if (solid->supports.of_node[i][k] < 0)
-            continue;
-        const double force =
-            (solid->internal[i][k] + solid->external[i][k]) + solid->contact[i][k];
-        advance.velocity[k] = (advance.place[k] - x[k]) / dt;
-        advance.support[k] =
-            mass * ((advance.velocity[k] - v[k]) / dt +
-                    solid->damping * (0.5 * (advance.velocity[k] + v[k])) - solid->gravity[k]) -
-            force;
-    }
+    hold(solid, i, pace->dt, force, &advance);
     return advance;
+}
+
+struct solid_advance solid_advance(const struct solid *solid, int i, double dt)
+{
+    const struct pace pace = pace_of(solid, dt);
+    return advance_at(solid, i, &pace);
 }
 
 void solid_power(const struct solid *solid, int i, const struct solid_advance *advance,
@@ -414,11 +479,12 @@ static void count_work(struct solid *solid, int i, const struct solid_advance *a
 
 void solid_move(struct solid *solid, int64_t step, double dt)
 {
+    const struct pace pace = pace_of(solid, dt);
     solid_supports_set(&solid->supports, step + 1, dt);
     for (int i = 0; i < solid->n_nodes; i++) {
         if (!solid->moves[i])
             continue;
-        const struct solid_advance advance = solid_advance(solid, i, dt);
+        const struct solid_advance advance = advance_at(solid, i, &pace);
         count_work(solid, i, &advance, step, dt);
         memcpy(solid_place(solid, i), advance.place, sizeof advance.place);
         memcpy(solid_velocity(solid, i), advance.velocity, sizeof advance.velocity);

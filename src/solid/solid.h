@@ -67,13 +67,17 @@ enum solid_work {
     SOLID_N_WORKS
 };
 
-/* Elements of one shape and material that are computed here. */
+/* Elements of one shape and material, of one part of the solid, that are computed here. */
 struct solid_list {
+    int part; /* elements part * SOLID_PART to (part + 1) * SOLID_PART - 1 */
     enum solid_element_shape shape;
     int material;
-    int n, capacity; /* padded */
-    int *elements;
+    int first, n; /* in `listed`; padded */
 };
+
+/* Elements whose forces are held before they are added to nodes: as many as stay in the
+ * cache. */
+enum { SOLID_PART = 512 };
 
 struct solid {
     int n_nodes;
@@ -93,7 +97,6 @@ struct solid {
     int32_t *alive;
     double *element_mass; /* [kg] */
     struct solid_element_state *state;
-    struct solid_element_force *force;
     int *first; /* of each node: where its corners begin in `meets`; n_nodes + 1 */
     int *meets; /* element * SOLID_ELEMENT_CORNERS + corner, ascending */
 
@@ -105,8 +108,13 @@ struct solid {
     double damping;    /* mass-proportional [1/s] */
 
     struct solid_element_kernel kernel;
-    int n_lists;
+    int n_lists, lists_capacity; /* in ascending order of parts */
     struct solid_list *lists;
+    int n_listed, listed_capacity;
+    int *listed;                       /* elements, list after list */
+    int *slot;                         /* of each element in `force`; -1: not computed here */
+    struct solid_element_force *force; /* of one part */
+    int force_capacity;
 };
 
 enum solid_node_field {

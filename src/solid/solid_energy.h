@@ -7,7 +7,7 @@
  *
  * and what elements took up is there, up to what the midpoint rule is off:
  *
- *     internal = elastic + plastic + hourglass + hourglass damped + damped   (THEORY.md, 12.8)
+ *     internal = elastic + plastic + hourglass + hourglass damped + damped   (12.17)
  */
 #ifndef TREMIE_SOLID_SOLID_ENERGY_H
 #define TREMIE_SOLID_SOLID_ENERGY_H

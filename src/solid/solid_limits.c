@@ -36,19 +36,17 @@ struct solid_limits solid_limits_find(const struct solid *solid, const double *s
                                       const double *damping)
 {
     struct solid_limits limits = {(double)INFINITY, -1, -1};
-    for (int k = 0; k < solid->n_lists; k++) {
-        const struct solid_list *list = &solid->lists[k];
-        for (int at = 0; at < list->n && list->elements[at] < solid->n_elements; at++) {
-            const int e = list->elements[at];
-            double x[SOLID_ELEMENT_CORNERS][3];
-            solid_corner_places(solid, e, x);
-            const struct solid_element_load load = solid_element_load(
-                list->shape, x, solid->element_mass[e], &solid->materials[list->material]);
-            const double step = solid_element_critical_step(
-                &load, largest_share(solid, e, stiffness), largest_share(solid, e, damping));
-            if (step < limits.step || (step == limits.step && e < limits.element))
-                limits = (struct solid_limits){step, e, -1};
-        }
+    for (int e = 0; e < solid->n_elements; e++) {
+        if (solid->slot[e] < 0)
+            continue;
+        double x[SOLID_ELEMENT_CORNERS][3];
+        solid_corner_places(solid, e, x);
+        const struct solid_element_load load = solid_element_load(
+            solid->shape[e], x, solid->element_mass[e], &solid->materials[solid->material[e]]);
+        const double step = solid_element_critical_step(
+            &load, largest_share(solid, e, stiffness), largest_share(solid, e, damping));
+        if (step < limits.step)
+            limits = (struct solid_limits){step, e, -1};
     }
     if (stiffness != NULL && limits.element >= 0)
         limits.node = stiffest_corner(solid, limits.element, stiffness);
@@ -81,31 +79,31 @@ static double least_volume(const struct solid *solid, int element, double dt)
     return now < before || now != now ? now : before;
 }
 
-static bool is_sound(const struct solid *solid, int element)
+/* Are stress and hourglass forces finite? */
+static bool is_sound(const struct solid_element_state *state)
 {
     double all = 0.0;
-    for (int c = 0; c < solid_element_corners(solid->shape[element]); c++)
-        for (int k = 0; k < 3; k++)
-            all += solid->force[element].corner[c][k] * 0.0;
+    for (int k = 0; k < 6; k++)
+        all += state->stress[k] * 0.0;
+    for (int k = 0; k < 12; k++)
+        all += state->hourglass[k / 3][k % 3] * 0.0;
     return all == 0.0;
 }
 
 struct solid_limits_fault solid_limits_fault(const struct solid *solid, double dt)
 {
     struct solid_limits_fault fault = {SOLID_LIMITS_FINE, -1, {0.0, 0.0, 0.0}, 0.0};
-    for (int k = 0; k < solid->n_lists; k++) {
-        const struct solid_list *list = &solid->lists[k];
-        for (int at = 0; at < list->n && list->elements[at] < solid->n_elements; at++) {
-            const int e = list->elements[at];
-            const double volume = least_volume(solid, e, dt);
-            if ((volume > 0.0 && is_sound(solid, e)) ||
-                (fault.element >= 0 && fault.element < e))
-                continue;
-            fault.failure = volume <= 0.0 ? SOLID_LIMITS_INVERTED : SOLID_LIMITS_NOT_A_NUMBER;
-            fault.element = e;
-            fault.place = middle_of(solid, e);
-            fault.value = volume;
-        }
+    for (int e = 0; e < solid->n_elements; e++) {
+        if (solid->slot[e] < 0)
+            continue;
+        const double volume = least_volume(solid, e, dt);
+        if (volume > 0.0 && is_sound(&solid->state[e]))
+            continue;
+        fault.failure = volume <= 0.0 ? SOLID_LIMITS_INVERTED : SOLID_LIMITS_NOT_A_NUMBER;
+        fault.element = e;
+        fault.place = middle_of(solid, e);
+        fault.value = volume;
+        break;
     }
     return fault;
 }

@@ -11,7 +11,7 @@
 struct solid_block {
     int n[3]; /* cells along each direction */
     bool tetrahedra;
-    struct solid_mesh mesh;
+    struct solid_parts mesh;
     enum solid_element_shape *shapes;
 };
 
@@ -20,7 +20,8 @@ static inline int solid_block_node(const struct solid_block *block, int i, int j
     return i + (block->n[0] + 1) * (j + (block->n[1] + 1) * k);
 }
 
-/* Six tetrahedra about the diagonal of a cell, the same in every cell, so that neighbours fit. */
+/* Six tetrahedra about the diagonal of a cell, the same in every cell, so that neighbours
+ * fit. */
 static inline void solid_block_split(const int corner[8],
                                      int (*elements)[SOLID_ELEMENT_CORNERS])
 {
@@ -38,7 +39,7 @@ static inline void solid_block_build(struct solid_block *block, int nx, int ny, 
     static const int at[8][3] = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0},
                                  {0, 0, 1}, {1, 0, 1}, {1, 1, 1}, {0, 1, 1}};
     *block = (struct solid_block){.n = {nx, ny, nz}, .tetrahedra = tetrahedra};
-    struct solid_mesh *mesh = &block->mesh;
+    struct solid_parts *mesh = &block->mesh;
     const int per_cell = tetrahedra ? 6 : 1;
     mesh->n_nodes = (nx + 1) * (ny + 1) * (nz + 1);
     mesh->n_elements = nx * ny * nz * per_cell;
