@@ -539,6 +539,7 @@ struct job {
         double motion;  /* largest motion in one step over radius [-] */
         double step;    /* largest time step over the critical one of present contacts [-] */
         double energy;  /* largest balance error over the energy turned over; 0: not watched */
+        double hourglass; /* largest share of a solid's internal energy; 0: not watched */
     } watch;
     int64_t order_every; /* M: steps between renewals of the canonical order (DESIGN: order) */
 };

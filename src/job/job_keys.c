@@ -1086,6 +1086,10 @@ static const struct schema_key watch_keys[] = {
      "largest error of the energy balance over the energy turned over, with contact.ledger; 0: "
      "not watched",
      .unit = "1", .standard = "0.1", BETWEEN(0.0, 1e6), AT(struct job, watch.energy)},
+    {"hourglass", SCHEMA_NUMBER,
+     "largest share of a solid's internal energy in hourglass modes, with contact.ledger; 0: not "
+     "watched",
+     .unit = "1", .standard = "0.1", BETWEEN(0.0, 1e6), AT(struct job, watch.hourglass)},
     END};
 
 #define SWEEP_KEYS                                                                             \

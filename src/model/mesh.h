@@ -104,8 +104,8 @@ struct mesh_survey {
 void mesh_build(struct mesh *mesh, int n_vertices, const struct vec3 *vertices, int n_facets,
                 const int (*facets)[4]);
 /*
- * The same of a surface that will deform, all of whose vertices are used: its vertices keep their
- * numbers, and every quad becomes four triangles.
+ * The same of a surface that will deform, all of whose vertices are used: its vertices keep
+ * their numbers, and every quad becomes four triangles.
  */
 void mesh_build_skin(struct mesh *mesh, int n_vertices, const struct vec3 *vertices,
                      int n_facets, const int (*facets)[4]);

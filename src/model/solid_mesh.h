@@ -77,8 +77,8 @@ int *solid_mesh_partners(const struct solid_mesh *mesh);
 /* The sides on the surface, ascending; returns how many.  The caller frees them. */
 int solid_mesh_surface(const struct solid_mesh *mesh, struct solid_mesh_side **sides);
 
-/* The surface as facets (a triangle has -1 last) of vertices numbered as they first occur; nodes[v]
- * is vertex v's.  Returns how many facets.  The caller frees both. */
+/* The surface as facets (a triangle has -1 last) of vertices numbered as they first occur;
+ * nodes[v] is vertex v's.  Returns how many facets.  The caller frees both. */
 int solid_mesh_skin(const struct solid_mesh *mesh, int *n_vertices, int **nodes,
                     int (**facets)[4]);
 

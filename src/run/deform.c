@@ -304,11 +304,10 @@ static void exchange_pushes(const struct simulation *sim, const struct deform_bo
 static void explain(const struct simulation *sim, const struct deform_body *deform, char *what,
                     size_t size)
 {
-    static const char *const failures[] = {
-        [SOLID_LIMITS_FINE] = "has failed",
-        [SOLID_LIMITS_INVERTED] = "is turned inside out",
-        [SOLID_LIMITS_NOT_A_NUMBER] = "is no more at places that are numbers",
-        [SOLID_LIMITS_HOURGLASS] = "has the most of too much hourglass energy"};
+    static const char *const failures[] = {[SOLID_LIMITS_FINE] = "has failed",
+                                           [SOLID_LIMITS_INVERTED] = "is turned inside out",
+                                           [SOLID_LIMITS_NOT_A_NUMBER] =
+                                               "is no more at places that are numbers"};
     const struct solid_limits_fault fault = solid_limits_fault(&deform->solid, sim->dt);
     snprintf(what, size, "element %d of body '%.60s' at (%.5g, %.5g, %.5g) m %s",
              fault.element + 1, sim->bodies.list[deform->body].name, fault.place.x,
@@ -379,10 +378,46 @@ void deform_move(struct simulation *sim)
 /* ---- What others ask
  * -------------------------------------------------------------------------- */
 
+/* Has a body too much energy in hourglass modes?  The rank with the worst element names it. */
+static bool is_hourglass(struct simulation *sim, const struct deform_body *deform,
+                         const struct solid_energies *energies)
+{
+    const double hourglass = solid_energy_value(energies, SOLID_ENERGY_HOURGLASS) +
+                             solid_energy_value(energies, SOLID_ENERGY_HOURGLASS_DAMPED);
+    const double internal = hourglass + solid_energy_value(energies, SOLID_ENERGY_ELASTIC) +
+                            solid_energy_value(energies, SOLID_ENERGY_PLASTIC) +
+                            solid_energy_value(energies, SOLID_ENERGY_DAMPED);
+    const double share = sim->job->watch.hourglass;
+    if (!(share > 0.0) || hourglass <= share * internal)
+        return false;
+    const struct solid_limits_fault fault =
+        solid_limits_hourglass(&deform->solid, hourglass, internal, share);
+    const struct solid_element_state *worst = &deform->solid.state[fault.element];
+    const double own =
+        fault.element >= 0 ? worst->hourglass_work + worst->hourglass_damped : -1.0;
+    double most = own;
+    comm_max(sim->comm, &most, 1);
+    if (own == most)
+        snprintf(sim->watch.what, sizeof sim->watch.what,
+                 "%.3g of the internal energy of body '%.60s', most in element %d at (%.5g, "
+                 "%.5g, %.5g) m",
+                 hourglass / internal, sim->bodies.list[deform->body].name, fault.element + 1,
+                 fault.place.x, fault.place.y, fault.place.z);
+    return true;
+}
+
 void deform_energies(struct simulation *sim, struct solid_energies *energies)
 {
-    for (int k = 0; k < sim->deform.n; k++)
-        solid_energies_add(&sim->deform.list[k].solid, sim->step, sim->dt, energies);
+    sim->deform.hourglass = false;
+    for (int k = 0; k < sim->deform.n; k++) {
+        struct solid_energies own = {.sums = {{{0}, 0, 0}}};
+        solid_energies_add(&sim->deform.list[k].solid, sim->step, sim->dt, &own);
+        exact_sum_reduce(sim->comm, own.sums, SOLID_N_ENERGIES);
+        for (int e = 0; e < SOLID_N_ENERGIES; e++)
+            exact_sum_merge(&energies->sums[e], &own.sums[e]);
+        if (is_hourglass(sim, &sim->deform.list[k], &own))
+            sim->deform.hourglass = true;
+    }
 }
 
 double deform_critical_step(const struct simulation *sim, int *body)

@@ -1,11 +1,11 @@
 /*
  * Bodies that deform: solids of finite elements (solid/solid.h) in the step.
  *
- * Every rank holds all of them, and moves its own share of their nodes: slabs across the longest
- * side of the body at the start, with as many nodes each.  After each move ranks tell each other
- * where theirs are; what contacts do to a node goes, as exact sums, to the rank that moves it.
- * So elements are shared out evenly whatever the spheres do, at the price of memory for all of
- * the nodes, and of one exchange of them a step, on every rank.
+ * Every rank holds all of them, and moves its own share of their nodes: slabs across the
+ * longest side of the body at the start, with as many nodes each.  After each move ranks tell
+ * each other where theirs are; what contacts do to a node goes, as exact sums, to the rank
+ * that moves it. So elements are shared out evenly whatever the spheres do, at the price of
+ * memory for all of the nodes, and of one exchange of them a step, on every rank.
  *
  * A body's surface is the skin that contacts push (model/body.h): its vertices are nodes.
  */
@@ -34,6 +34,7 @@ struct deform {
     struct deform_body *list;
     int64_t n_nodes, n_elements; /* of all */
     bool failed;                 /* some element here has, in this step */
+    bool hourglass;              /* some solid has too much energy in hourglass modes */
 };
 
 void deform_init(struct deform *deform, const struct simulation *sim, enum isa isa);
@@ -46,7 +47,8 @@ void deform_plan(struct simulation *sim);
 /* Moves all nodes.  Collective. */
 void deform_move(struct simulation *sim);
 
-/* Adds what this rank counts, between deform_plan() and deform_move().  Local. */
+/* Totals over all solids and ranks, between deform_plan() and deform_move(); notes whether some
+ * solid has too much in hourglass modes.  Collective. */
 void deform_energies(struct simulation *sim, struct solid_energies *energies);
 /* The critical step of the elements as they are, without contacts; *body is whose.  Infinite
  * without any.  Collective. */

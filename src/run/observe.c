@@ -292,7 +292,6 @@ static void add_solid_energies(struct simulation *sim, double energies[N_ENERGIE
     if (sim->deform.n == 0)
         return;
     deform_energies(sim, &solids);
-    exact_sum_reduce(sim->comm, solids.sums, SOLID_N_ENERGIES);
     for (int e = 0; e < SOLID_N_ENERGIES; e++)
         value[e] = solid_energy_value(&solids, (enum solid_energy)e);
     energies[ENERGY_TRANSLATION] += value[SOLID_ENERGY_KINETIC];

@@ -488,6 +488,8 @@ void watch_energy(struct watch *watch, const struct simulation *sim)
     const double limit = sim->job->watch.energy, error = sim->observe.energy_error;
     if (!sim->job->energy_ledger)
         return;
+    if (sim->deform.hourglass)
+        fail(watch, WATCH_HOURGLASS);
     if (error != error)
         fail(watch, WATCH_SUMS);
     else if (limit > 0.0 && error > limit)
@@ -756,6 +758,12 @@ static void explain_others(enum watch_failure failure, const struct simulation *
             "more regular, or time.step smaller",
             when, what);
         break;
+    case WATCH_HOURGLASS:
+        report_error(
+            "hourglass modes at %s: %s, more than watch.hourglass = %.3g; make the mesh finer "
+            "where it is loaded, or the load less concentrated",
+            when, what, sim->job->watch.hourglass);
+        break;
     case WATCH_FINE:
     case WATCH_OVERLAP:
     case WATCH_STEP:
@@ -785,7 +793,8 @@ void watch_explain(const struct watch *watch, const struct simulation *sim)
     const char *appeared = find_appeared(sim);
     const bool starts_deep = too_deep && sim->step <= 1;
     const bool by_contacts = watch->failure != WATCH_FAR && watch->failure != WATCH_LEAVER &&
-                             watch->failure != WATCH_FULL && watch->failure != WATCH_ELEMENT;
+                             watch->failure != WATCH_FULL && watch->failure != WATCH_ELEMENT &&
+                             watch->failure != WATCH_HOURGLASS;
     /* Whatever rang: beyond the critical step the step is to blame. */
     if (appeared != NULL && deepest.overlap > 0.0 && watch->failure != WATCH_LEAVER)
         report_error("body '%s' appeared where spheres are, at %s: %s overlap by %.3g of a "

@@ -26,13 +26,14 @@ enum watch_failure {
     WATCH_NOT_A_NUMBER, /* a place or velocity is NaN or infinite */
     WATCH_STEP,         /* the step exceeds what the present contacts allow */
     WATCH_OVERLAP,      /* a contact overlaps too much */
-    WATCH_MOTION,  /* a sphere or body moves too far in one step: contacts would be missed */
-    WATCH_FAR,     /* so far from the origin that rounding of places spoils contacts */
-    WATCH_LEAVER,  /* a sphere left the domain */
-    WATCH_FULL,    /* an insertion finds no room, and is to stop then */
-    WATCH_ENERGY,  /* the energy balance does not close */
-    WATCH_SUMS,    /* a total is beyond what exact sums hold */
-    WATCH_ELEMENT, /* an element of a body that deforms has failed, or allows no such step */
+    WATCH_MOTION,    /* a sphere or body moves too far in one step: contacts would be missed */
+    WATCH_FAR,       /* so far from the origin that rounding of places spoils contacts */
+    WATCH_LEAVER,    /* a sphere left the domain */
+    WATCH_FULL,      /* an insertion finds no room, and is to stop then */
+    WATCH_ENERGY,    /* the energy balance does not close */
+    WATCH_SUMS,      /* a total is beyond what exact sums hold */
+    WATCH_ELEMENT,   /* an element of a body that deforms has failed, or allows no such step */
+    WATCH_HOURGLASS, /* a body that deforms does so in ways that its elements do not feel */
 };
 
 /* Why a run stops before its end, with a checkpoint. */
@@ -68,7 +69,7 @@ struct watch {
     /* What all contacts of each body that forces move do to it, when last looked at. */
     struct critical_step_sums *loads;
     /* this rank's part of the diagnosis */
-    char what[160];
+    char what[256];
 };
 
 void watch_init(struct watch *watch, const struct job *job);

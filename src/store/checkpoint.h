@@ -61,8 +61,8 @@ struct checkpoint_contacts {
                   struct facet_contact_record **records);
 };
 
-/* A further table, of what a job has besides spheres: rows of an id and fields, in /NAME.  Reading
- * gives all rows, in ascending order of ids 0 .. n_ids - 1, to every rank. */
+/* A further table, of what a job has besides spheres: rows of an id and fields, in
+ * /NAME.  Reading gives all rows, in ascending order of ids 0 .. n_ids - 1, to every rank. */
 struct checkpoint_more {
     const char *name;
     int n_fields;

@@ -1,0 +1,72 @@
+#!/bin/bash
+# timeout: 900
+# Bodies that deform have the bits of the job: complete states and series are equal on any number of
+# ranks, for any search, kernel and restart, with plastic flow, both kinds of elements, and spheres
+# that roll over facets whose nodes other ranks move.
+set -uo pipefail
+# shellcheck source=tests/cases/common.sh
+. "$(dirname "$0")/common.sh"
+python=/usr/bin/python3
+
+run 1 one deform
+result "spheres on solids, on 1 rank"
+
+counts="2 3 4 5 8"
+[ -n "$thorough" ] || counts=3
+for ranks in $counts; do
+    run "$ranks" this deform
+    [ -n "$why" ] || same_run one this
+    result "on $ranks ranks"
+    rm -rf this
+done
+
+like() # like RANKS NAME OPTIONS...
+{
+    local ranks=$1 name=$2
+    shift 2
+    run "$ranks" this deform "$@"
+    [ -n "$why" ] || same_run one this
+    result "$name"
+    rm -rf this
+}
+like 2 "search every 7 steps" --set testing.search_every=7
+like 1 "all pairs" --set testing.search=all-pairs
+like 3 "other subdomains" --set decomposition.grid=[1,3,1] --set decomposition.buffer=0.02
+for isa in generic v2 v3 v4; do
+    if tremie 1 check "$scenes/deform.yaml" --isa $isa; then
+        like 1 "kernels of $isa" --isa $isa
+    else
+        grep -q "isa $isa does not run" said || echo "FAIL kernels of $isa: $(head -n 1 said)"
+    fi
+done
+
+start 2 killed deform
+wait_until_after killed 300
+kill_ranks
+run 3 killed deform
+says "resumes at step"
+same_run one killed
+result "killed on 2 ranks, resumed on 3"
+
+# What the scene is for must happen in it.
+if "$python" - one << 'END' > seen 2>&1
+import glob, sys
+import h5py
+series = [h5py.File(name)["series"] for name in sorted(glob.glob(sys.argv[1] + "/series/*.h5"))]
+last = {name: series[-1][name][-1] for name in series[-1]}
+turned = sum(abs(last[name]) for name in last if name.startswith(("kinetic", "elastic", "dissipated", "work")))
+state = h5py.File(sorted(glob.glob(sys.argv[1] + "/checkpoints/*.h5"))[-1])
+assert last["dissipated_plastic"] > 0.02 * turned, last["dissipated_plastic"]
+assert abs(last["balance"]) < 2e-3 * turned, last["balance"]
+assert (state["elements/plastic_strain"][()] > 0.0).sum() > 50
+assert max(max(part["n_facet_contacts"][()]) for part in series) > 10
+assert abs(state["nodes/velocity"][-1]).max() > 0.1  # of the brick
+END
+then
+    result "plastic flow, the balance of energy, spheres on deforming facets"
+elif grep -q "No module named" seen; then
+    echo "skip what happens: python3-h5py is not installed"
+else
+    why=" $(tail -n 1 seen);"
+    result "plastic flow, the balance of energy, spheres on deforming facets"
+fi
