@@ -78,7 +78,9 @@ static double largest_eigenvalue(double g[3][3])
     double root = 1.0, scale[SQUARINGS + 1];
     for (int round = 0; round <= SQUARINGS; round++) {
         scale[round] = g[0][0] + g[1][1] + g[2][2];
-        if (!(scale[round] > 0.0) || round == SQUARINGS)
+        if (!(scale[round] > 0.0))
+            return scale[round]; /* no strain resists, or no number */
+        if (round == SQUARINGS)
             break;
         double next[3][3];
         for (int i = 0; i < 3; i++)
@@ -91,8 +93,6 @@ static double largest_eigenvalue(double g[3][3])
             for (int j = 0; j < 3; j++)
                 g[i][j] = next[i][j];
     }
-    if (!(scale[0] > 0.0))
-        return scale[0];
     for (int round = SQUARINGS; round >= 0; round--)
         root = scale[round] * (round == SQUARINGS ? 1.0 : sqrt(root));
     return root;

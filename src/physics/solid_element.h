@@ -61,13 +61,13 @@ struct solid_element_yield {
 };
 
 struct solid_element_material {
-    double density;             /* [kg/m3] */
-    double lambda, mu;          /* Lame's [Pa] */
-    double damping;             /* stiffness-proportional [s] */
-    double hourglass_stiffness; /* 1: as fast as the fastest wave across a cube [-] */
-    double hourglass_viscosity; /* 1: critical for such an oscillation [-] */
-    int n_yield;                /* pieces; 0: never yields */
-    const struct solid_element_yield *yield; /* the first from strain 0 on */
+    double density;                    /* [kg/m3] */
+    double lambda, mu;                 /* Lame's [Pa] */
+    double damping;                    /* stiffness-proportional [s] */
+    double hourglass_stiffness;        /* 1: as fast as the fastest wave across a cube [-] */
+    double hourglass_viscosity;        /* 1: critical for such an oscillation [-] */
+    int n_yield;                       /* pieces; 0: never yields */
+    struct solid_element_yield *yield; /* the first from strain 0 on */
 };
 
 /*

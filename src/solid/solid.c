@@ -175,7 +175,7 @@ void solid_create(struct solid *solid, const struct solid_parts *mesh, int n_mat
 void solid_destroy(struct solid *solid)
 {
     for (int m = 0; m < solid->n_materials; m++)
-        free((void *)(uintptr_t)solid->materials[m].yield);
+        free(solid->materials[m].yield);
     solid_supports_clear(&solid->supports);
     solid_loads_clear(&solid->loads);
     free(solid->reference);
