@@ -174,7 +174,8 @@ static struct mesh_face joined_facet(const int facet[4], const int *joined, int 
     return face;
 }
 
-/* Of a surface that deforms quads are divided whether flat or not, and no vertices are joined. */
+/* Of a surface that deforms quads are divided whether flat or not, and no vertices are
+ * joined. */
 static struct draft draft_faces(int n_vertices, const struct vec3 *vertices, int n_facets,
                                 const int (*facets)[4], bool deforms)
 {

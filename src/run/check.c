@@ -15,6 +15,7 @@
 #include "model/packings.h"
 #include "model/region.h"
 #include "model/rigid.h"
+#include "physics/critical_step.h"
 #include "run/chain.h"
 #include "run/inflow.h"
 #include "run/limits.h"
@@ -27,6 +28,10 @@
 #include "store/file.h"
 #include "store/sphere_file.h"
 #include "store/surface_file.h"
+
+/* Share of the elements' critical step that the automatic step takes: contacts need the rest.
+ */
+static const double ELEMENTS_SHARE = 0.7;
 
 enum { ALL_PAIRS_MOST = 20000 }; /* 2e8 pairs */
 
@@ -162,6 +167,9 @@ static void choose_times(struct job *job, const struct packings *packings,
     materials_clear(&materials);
     if (limits.rayleigh < 1e299)
         job->time.step = limits_step(&limits, job->time.safety);
+    const double solids = ELEMENTS_SHARE * solid_survey_step(job);
+    if (solids < 1e299 && (!(job->time.step > 0.0) || solids < job->time.step))
+        job->time.step = critical_step_round_down(solids);
     round_times(job);
 }
 

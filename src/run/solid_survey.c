@@ -224,6 +224,22 @@ static double step_of(const struct job *job, const struct job_body *body, double
     return 2.0 / omega * (sqrt(1.0 + damped * damped) - damped);
 }
 
+double solid_survey_step(const struct job *job)
+{
+    double least = (double)INFINITY;
+    for (int b = 0; b < job->n_bodies; b++) {
+        const struct job_body *body = &job->bodies[b];
+        struct solid_mesh mesh;
+        if (body->model != JOB_MODEL_SOLID)
+            continue;
+        solid_mesh_build(&mesh, body);
+        const double step = step_of(job, body, solid_quality_of(&mesh).width);
+        solid_mesh_clear(&mesh);
+        least = step < least ? step : least;
+    }
+    return least;
+}
+
 /* "element 12 at (0.1, 0.2, 0.3) m" */
 static const char *element_name(const struct solid_mesh *mesh, int e, char text[TEXT])
 {
@@ -321,6 +337,19 @@ static void warn_of_layers(const struct job_body *body)
                     body->name, cells[2], cells[2] == 1.0 ? "" : "s", LAYERS);
 }
 
+/* Springs against hourglass modes hold what ought to flow. */
+static void warn_of_flow(const struct job *job, const struct job_body *body)
+{
+    const struct job_material *material = &job->materials[body->material];
+    const bool flows = material->yield > 0.0 || material->n_hardening_table > 0;
+    if (flows && body->solid.elements == JOB_ELEMENTS_HEXAHEDRA &&
+        body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS &&
+        body->solid.hourglass.coefficient > 0.0)
+        report_warn("body '%s': %s flows, and springs against hourglass modes do not: elements "
+                    "are too stiff then; hourglass: {kind: viscous} is better",
+                    body->name, material->name);
+}
+
 void solid_survey_warn(const struct job *job, int b)
 {
     static const double JACOBIAN = 0.1, ASPECT = 20.0;
@@ -332,6 +361,7 @@ void solid_survey_warn(const struct job *job, int b)
     const double step = step_of(job, body, q.width);
     warn_of_material(job, body);
     warn_of_layers(body);
+    warn_of_flow(job, body);
     if (job->time.step > step)
         report_warn("body '%s': time.step is %.3g of the critical step of %s; it would be "
                     "unstable",

@@ -10,6 +10,9 @@ struct mistakes;
 
 /* Lists what is wrong with meshes, sets and boundaries; files have been read.  Local. */
 void solid_survey_check(const struct job *job, struct mistakes *mistakes);
+/* About the largest step that the elements of all solids bear, without contacts; infinite
+ * without any [s].  Local. */
+double solid_survey_step(const struct job *job);
 /* A few lines for body b, which is a solid.  Local. */
 void solid_survey_print(const struct job *job, int b);
 /* Warns of what is allowed and probably not meant: of its elements, its material, the step.
