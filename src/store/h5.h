@@ -40,6 +40,9 @@ void h5_open(struct h5 *h5, const char *path);
 /* For all ranks to write rows that were declared.  When that fails on some rank, no rank may
  * close the file, nor end in MPI_Finalize: they would wait for each other.  Collective. */
 void h5_open_shared(struct h5 *h5, const char *path, const struct comm *comm);
+/* After all rows have been written to the shared file at `path`: whatever closing it writes,
+ * metadata as they are there already, goes nowhere, so that closing cannot fail.  Local. */
+void h5_let_go(struct h5 *h5, const char *path);
 /* Closes the file, if it is open.  Collective after h5_open_shared, else local. */
 void h5_close(struct h5 *h5);
 /* Notes a failure found by the caller, unless there was one already.  Local. */

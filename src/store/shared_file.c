@@ -2,12 +2,14 @@
  * See shared_file.h.
  *
  * Writing has three parts.  One rank lays the whole file out and gives it its space on the
- * disk, so that a full disk, a quota or a file-size limit shows itself where it is an error
- * of one process, not in the midst of a collective call, where MPI's files may hang.  Then
- * all ranks fill in their slices through parallel HDF5; each rank writes its own contiguous
- * run of each data set, so there is nothing for collective buffering to gather, and a rank
- * whose disk fails keeps nobody waiting.  Last the file is forced to the disk and renamed.
- * Because one rank alone decides the layout, bytes cannot depend on the number of ranks.
+ * disk, so that a full disk, a quota or a file-size limit shows itself where it is an error of
+ * one process, not in the midst of a collective call, where MPI's files may hang.  Then all
+ * ranks fill in their slices through parallel HDF5; each rank writes its own contiguous run of
+ * each data set, so there is nothing for collective buffering to gather, and a rank whose disk
+ * fails keeps nobody waiting.  Closing writes metadata, as they are already, and if one rank
+ * cannot do that the others wait for ever: so the file has been let go of before.  Last the
+ * file is forced to the disk and renamed. Because one rank alone decides the layout, bytes
+ * cannot depend on the number of ranks.
  *
  * Packed tables are the exception: how long they are is known only when they are packed.  Each
  * rank packs its own rows and the one that lays out the file gets the result, so it needs as
@@ -116,6 +118,7 @@ static char *fill_in(const struct comm *comm, const struct shared_file *file,
             table_stream(&file->tables[t], comm, &h5);
         else
             table_write(&file->tables[t], &h5);
+    h5_let_go(&h5, temporary);
     if (!shared_file_all_well(comm, &h5.why))
         abandon(comm, file, temporary, h5.why);
     h5_close(&h5);
