@@ -1097,6 +1097,14 @@ static void laws_check(const struct check *check)
     }
 }
 
+static bool has_solid(const struct job *job)
+{
+    for (int b = 0; b < job->n_bodies; b++)
+        if (job->bodies[b].model == JOB_MODEL_SOLID)
+            return true;
+    return false;
+}
+
 void job_check(const struct job *job, const struct yaml_tree_node *root, bool read_files,
                bool *used, struct mistakes *mistakes)
 {
@@ -1114,9 +1122,10 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     materials_check(&check);
     spheres_check(&check, read_files, falling);
     bodies_check(&check, read_files, standing);
-    if (job->n_spheres == 0 && job->n_insertions == 0 && !job->start.given &&
+    if (job->n_spheres == 0 && job->n_insertions == 0 && !job->start.given && !has_solid(job) &&
         is_clean(&check, "spheres") && is_clean(&check, "insert"))
-        mistake(&check, "spheres", "are missing; a group of spheres, or `insert`, is expected");
+        mistake(&check, "spheres",
+                "are missing; a group of spheres, `insert`, or a solid body is expected");
     insertions_check(&check, falling);
     removals_check(&check);
     contents_check(&check);
