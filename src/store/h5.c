@@ -93,15 +93,19 @@ static void prepare(struct h5 *h5)
     H5Eset_auto2(H5E_DEFAULT, NULL, NULL);
 }
 
-/* One version of the format, whose metadata carry checksums, and which does not mark files that
- * are open; no locks, for nobody reads what is being written, and some file systems have none.
- */
+/* No locks, for nobody reads what is being written, and some file systems have none. */
 static hid_t access_properties(void)
 {
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
-    H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);
     H5Pset_file_locking(access, false, true);
     return access;
+}
+
+/* Files that we write have one version of the format, whose metadata carry checksums, and
+ * which does not mark files that are open. */
+static void use_one_version(hid_t access)
+{
+    H5Pset_libver_bounds(access, H5F_LIBVER_V18, H5F_LIBVER_V18);
 }
 
 /* From now on what HDF5 writes to its file goes to memory. */
@@ -119,6 +123,7 @@ void h5_create(struct h5 *h5, const char *path)
 {
     prepare(h5);
     const hid_t access = access_properties(), creation = H5Pcreate(H5P_FILE_CREATE);
+    use_one_version(access);
     H5Pset_obj_track_times(creation, false);
     h5->file = H5Fcreate(path, H5F_ACC_TRUNC, creation, access);
     if (h5->file < 0)
@@ -146,6 +151,7 @@ void h5_open_shared(struct h5 *h5, const char *path, const struct comm *comm)
      * fail; it has a better one, chosen when the first file is opened. */
     setenv("OMPI_MCA_io", "^ompio", false);
     const hid_t access = access_properties();
+    use_one_version(access);
     H5Pset_fapl_mpio(access, comm->mpi, MPI_INFO_NULL);
     h5->file = H5Fopen(path, H5F_ACC_RDWR, access);
     if (h5->file < 0)
