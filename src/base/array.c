@@ -86,6 +86,6 @@ char *array_format(const char *format, ...)
 
 size_t array_capacity(size_t capacity, size_t needed)
 {
-    const size_t grown = capacity + capacity / 4 + 16;
+    const size_t grown = capacity + capacity / 8 + 16;
     return grown > needed ? grown : needed;
 }

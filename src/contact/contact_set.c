@@ -332,20 +332,18 @@ static void carry_history(struct contact_set *contacts)
 {
     const size_t needed = (size_t)contacts->now.n_padded + 1;
     const bool grow = needed > (size_t)contacts->history_capacity;
-    const size_t capacity = grow ? needed + needed / 8 : (size_t)contacts->history_capacity;
+    const size_t capacity = grow ? needed + needed / 32 : (size_t)contacts->history_capacity;
     for (int l = 0; l < CONTACT_LANES; l++) {
         if (!has_lane(contacts, l))
             continue;
-        if (grow) {
+        if (grow || contacts->spare == NULL) {
             free(contacts->spare);
             contacts->spare = array_allocate_rows(capacity, sizeof(double));
         }
         carry_lane(contacts, l);
     }
-    if (grow) {
-        free(contacts->spare);
-        contacts->spare = array_allocate_rows(capacity, sizeof(double));
-    }
+    free(contacts->spare);
+    contacts->spare = NULL;
     contacts->history_capacity = (int)capacity;
 }
 

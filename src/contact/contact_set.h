@@ -55,9 +55,9 @@ struct contact_pairs {
 struct contact_set {
     bool full, ledger; /* which lanes there are */
     struct contact_list now;
-    int pair_capacity, history_capacity; /* of `now` and of the lane to spare */
-    double *spare;                       /* a lane that the next one is made in */
-    int *row_begin, *row_end;            /* entries of `now` whose first is sphere i */
+    int pair_capacity, history_capacity; /* of `now` */
+    double *spare;            /* a lane that the next one is made in; none between lists */
+    int *row_begin, *row_end; /* entries of `now` whose first is sphere i */
     int row_capacity;
     /* While `now` is made: */
     struct contact_pairs before; /* pairs of the list that it replaces */
