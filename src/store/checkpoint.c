@@ -499,6 +499,7 @@ static char *read_header(const char *path, struct checkpoint *checkpoint,
     static const char *const counts[N_KINDS] = {"n_spheres", "n_contacts", "n_facet_contacts"};
     struct h5 h5;
     h5_open(&h5, path);
+    h5_look_around(&h5);
     get_header(&h5, checkpoint);
     get_monitors(&h5, checkpoint);
     notes_get(&checkpoint->notes, &h5);

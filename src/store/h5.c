@@ -344,6 +344,34 @@ char *h5_get_text(struct h5 *h5, const char *object, const char *name)
     return text;
 }
 
+/* Opens an attribute, which reads it. */
+static herr_t look_at_attribute(hid_t object, const char *name, const H5A_info_t *info,
+                                void *unused)
+{
+    (void)info;
+    (void)unused;
+    const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+    return attribute < 0 ? -1 : H5Aclose(attribute);
+}
+
+static herr_t look_at_object(hid_t file, const char *name, const H5O_info_t *info, void *unused)
+{
+    (void)info;
+    const hid_t object = H5Oopen(file, name, H5P_DEFAULT);
+    if (object < 0)
+        return -1;
+    const herr_t status =
+        H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, look_at_attribute, unused);
+    return H5Oclose(object) < 0 ? -1 : status;
+}
+
+void h5_look_around(struct h5 *h5)
+{
+    if (h5->why == NULL &&
+        H5Ovisit(h5->file, H5_INDEX_NAME, H5_ITER_NATIVE, look_at_object, NULL) < 0)
+        fail_at(h5, "");
+}
+
 bool h5_has(struct h5 *h5, const char *path)
 {
     return h5->why == NULL && H5Lexists(h5->file, path, H5P_DEFAULT) > 0;

@@ -57,6 +57,9 @@ void h5_put_double(struct h5 *h5, const char *object, const char *name, double v
 char *h5_get_text(struct h5 *h5, const char *object, const char *name);
 int64_t h5_get_int(struct h5 *h5, const char *object, const char *name);
 double h5_get_double(struct h5 *h5, const char *object, const char *name);
+/* Looks at all objects and attributes of the file, so that HDF5 verifies its own checksums of
+ * parts that nobody asks for. */
+void h5_look_around(struct h5 *h5);
 /* Is there an object of this path? */
 bool h5_has(struct h5 *h5, const char *path);
 
