@@ -346,29 +346,34 @@ char *h5_get_text(struct h5 *h5, const char *object, const char *name)
 
 /* Opens an attribute, which reads it. */
 static herr_t look_at_attribute(hid_t object, const char *name, const H5A_info_t *info,
-                                void *unused)
+                                void *h5)
 {
     (void)info;
-    (void)unused;
     const hid_t attribute = H5Aopen(object, name, H5P_DEFAULT);
+    if (attribute < 0)
+        fail_at(h5, name);
     return attribute < 0 ? -1 : H5Aclose(attribute);
 }
 
-static herr_t look_at_object(hid_t file, const char *name, const H5O_info_t *info, void *unused)
+static herr_t look_at_object(hid_t file, const char *name, const H5O_info_t *info, void *h5)
 {
     (void)info;
     const hid_t object = H5Oopen(file, name, H5P_DEFAULT);
-    if (object < 0)
+    if (object < 0) {
+        fail_at(h5, name);
         return -1;
+    }
     const herr_t status =
-        H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, look_at_attribute, unused);
+        H5Aiterate2(object, H5_INDEX_NAME, H5_ITER_NATIVE, NULL, look_at_attribute, h5);
+    if (status < 0)
+        fail_at(h5, name);
     return H5Oclose(object) < 0 ? -1 : status;
 }
 
 void h5_look_around(struct h5 *h5)
 {
     if (h5->why == NULL &&
-        H5Ovisit(h5->file, H5_INDEX_NAME, H5_ITER_NATIVE, look_at_object, NULL) < 0)
+        H5Ovisit(h5->file, H5_INDEX_NAME, H5_ITER_NATIVE, look_at_object, h5) < 0)
         fail_at(h5, "");
 }
 
