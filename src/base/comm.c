@@ -92,14 +92,14 @@ void comm_gather_all(const struct comm *comm, const void *own, void *all, size_t
     COMM_CHECK(MPI_Allgather(own, (int)n, MPI_BYTE, all, (int)n, MPI_BYTE, comm->mpi));
 }
 
-void comm_gather_parts(const struct comm *comm, const void *own, void *all, const int *sizes)
+void comm_gather_parts(const struct comm *comm, void *all, const int *sizes)
 {
     int *begin = array_allocate((size_t)comm->n_ranks, sizeof *begin);
     for (int q = 1; q < comm->n_ranks; q++) {
         CHECK(sizes[q - 1] <= INT_MAX - begin[q - 1], "over 2 GiB to gather");
         begin[q] = begin[q - 1] + sizes[q - 1];
     }
-    COMM_CHECK(MPI_Allgatherv(own, sizes[comm->rank], MPI_BYTE, all, sizes, begin, MPI_BYTE,
+    COMM_CHECK(MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, all, sizes, begin, MPI_BYTE,
                               comm->mpi));
     free(begin);
 }

@@ -40,9 +40,9 @@ void comm_broadcast(const struct comm *comm, void *bytes, size_t n);
 /* Everybody's n bytes to everybody, in rank order: `all` holds n * n_ranks bytes.
  * Collective. */
 void comm_gather_all(const struct comm *comm, const void *own, void *all, size_t n);
-/* Everybody's sizes[rank] bytes to everybody, side by side in rank order; all ranks know the
- * sizes. Collective. */
-void comm_gather_parts(const struct comm *comm, const void *own, void *all, const int *sizes);
+/* Everybody's sizes[rank] bytes to everybody: `all` has room for them side by side in rank
+ * order, and the own ones in their place; all ranks know the sizes.  Collective. */
+void comm_gather_parts(const struct comm *comm, void *all, const int *sizes);
 void comm_barrier(const struct comm *comm);
 
 /*

@@ -357,6 +357,23 @@ static const struct schema_key rotate_keys[] = {
      BETWEEN(-FAR, FAR), AT(struct job_body, turn_point)},
     END};
 
+/* How a shape or a mesh is placed. */
+#define PLACE_KEYS                                                                             \
+    {"scale",                                                                                  \
+     SCHEMA_NUMBER,                                                                            \
+     "factor on all coordinates, applied first: 0.001 for a file in mm",                       \
+     .unit = "1",                                                                              \
+     ABOVE_TO(0.0, 1e9),                                                                       \
+     GIVEN(struct job_body, scale),                                                            \
+     AT(struct job_body, scale)},                                                              \
+        {"rotate", SCHEMA_GROUP, "a rotation, applied next", .inside = rotate_keys,            \
+         GIVEN(struct job_body, turn_axis)},                                                   \
+    {                                                                                          \
+        "move", SCHEMA_NUMBER, "a shift, applied last", .unit = "m", BETWEEN(-FAR, FAR),       \
+                                                        GIVEN(struct job_body, move),          \
+                                                        AT(struct job_body, move)              \
+    }
+
 static const struct schema_key geometry_keys[] = {
     {"kind", SCHEMA_CHOICE, "the shape", .required = true, .choices = geometries,
      AT(struct job_body, geometry)},
@@ -428,13 +445,7 @@ static const struct schema_key geometry_keys[] = {
      "one place do so in any case",
      .unit = "m", ABOVE_TO(0.0, FAR), .kinds = FILES | KIND(JOB_GEOMETRY_MESH),
      GIVEN(struct job_body, merge), AT(struct job_body, merge)},
-    {"scale", SCHEMA_NUMBER, "factor on all coordinates, applied first: 0.001 for a file in mm",
-     .unit = "1", ABOVE_TO(0.0, 1e9), GIVEN(struct job_body, scale),
-     AT(struct job_body, scale)},
-    {"rotate", SCHEMA_GROUP, "a rotation, applied next", .inside = rotate_keys,
-     GIVEN(struct job_body, turn_axis)},
-    {"move", SCHEMA_NUMBER, "a shift, applied last", .unit = "m", BETWEEN(-FAR, FAR),
-     GIVEN(struct job_body, move), AT(struct job_body, move)},
+    PLACE_KEYS,
     END};
 
 static const struct schema_key rotation_keys[] = {
@@ -668,13 +679,7 @@ static const struct schema_key solid_mesh_keys[] = {
     {"group", SCHEMA_TEXT,
      "the physical volume that is taken, with the nodes that it has; all elements when left out",
      .kinds = MESH_FILES, GIVEN(struct job_body, group), AT(struct job_body, group)},
-    {"scale", SCHEMA_NUMBER, "factor on all coordinates, applied first: 0.001 for a file in mm",
-     .unit = "1", ABOVE_TO(0.0, 1e9), GIVEN(struct job_body, scale),
-     AT(struct job_body, scale)},
-    {"rotate", SCHEMA_GROUP, "a rotation, applied next", .inside = rotate_keys,
-     GIVEN(struct job_body, turn_axis)},
-    {"move", SCHEMA_NUMBER, "a shift, applied last", .unit = "m", BETWEEN(-FAR, FAR),
-     GIVEN(struct job_body, move), AT(struct job_body, move)},
+    PLACE_KEYS,
     END};
 
 static const struct schema_key set_keys[] = {

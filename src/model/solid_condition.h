@@ -22,8 +22,10 @@ enum solid_condition_kind {
 struct solid_condition {
     enum solid_condition_kind kind;
     const struct solid_mesh_set *set;
-    int directions;               /* a set of enum job_direction; none of a pressure */
-    double constant;              /* the value where there are no rows */
+    int directions; /* a set of enum job_direction; none of a pressure */
+    /* The value where there are no rows: displacement [m], velocity [m/s], force on all of the
+     * set's nodes together [N], pressure against the surface [Pa]; 0 of what is fixed. */
+    double constant;
     int n;                        /* rows of a table */
     const struct job_value *rows; /* of the job */
 };
@@ -31,12 +33,5 @@ struct solid_condition {
 /* The item as it acts on a mesh, which has the set; both are to outlive it. */
 struct solid_condition solid_condition_of(const struct job_boundary *asked,
                                           const struct solid_mesh *mesh);
-
-/* Its value: displacement [m], velocity [m/s], force on all of the set's nodes together [N],
- * pressure against the surface [Pa]; 0 of what is fixed. */
-double solid_condition_at(const struct solid_condition *condition, double time);
-/* How far the nodes are from their places at the start: what is fixed, displaced, or the exact
- * integral of a velocity [m]. */
-double solid_condition_travel(const struct solid_condition *condition, double time);
 
 #endif

@@ -62,48 +62,36 @@ static void add_support(struct solid *solid, const struct solid_condition *condi
         [SOLID_CONDITION_FIXED] = SOLID_SUPPORT_FIXED,
         [SOLID_CONDITION_DISPLACEMENT] = SOLID_SUPPORT_DISPLACEMENT,
         [SOLID_CONDITION_VELOCITY] = SOLID_SUPPORT_VELOCITY};
-    struct solid_table_point constant = {0.0, condition->constant};
-    struct solid_table table = {1, &constant};
-    if (condition->n > 0) {
-        table.n = condition->n;
-        table.points = array_allocate((size_t)condition->n, sizeof *table.points);
-    }
-    for (int k = 0; k < condition->n; k++)
-        table.points[k] =
-            (struct solid_table_point){condition->rows[k].time, condition->rows[k].value};
+    struct solid_table table = solid_table_of(condition);
     for (int d = 0; d < 3; d++)
         if ((condition->directions >> d & 1) != 0)
             solid_supports_add(&solid->supports, kinds[condition->kind], d, &table,
                                condition->set->n_nodes, condition->set->nodes);
-    if (condition->n > 0)
-        free(table.points);
+    solid_table_clear(&table);
 }
 
 static void add_load(struct solid *solid, const struct solid_condition *condition)
 {
-    const int n = condition->n;
-    struct solid_table table = {n, array_allocate((size_t)n, sizeof *table.points)};
-    for (int k = 0; k < n; k++)
-        table.points[k] =
-            (struct solid_table_point){condition->rows[k].time, condition->rows[k].value};
     const struct solid_mesh_set *set = condition->set;
-    const double value = n > 0 ? 1.0 : condition->constant;
+    const bool varies = condition->n > 0;
+    const double value = varies ? 1.0 : condition->constant;
+    struct solid_table table = solid_table_of(condition);
     if (condition->kind == SOLID_CONDITION_FORCE) {
         const double share = value / set->n_nodes;
         const struct vec3 force = {(condition->directions & 1) != 0 ? share : 0.0,
                                    (condition->directions & 2) != 0 ? share : 0.0,
                                    (condition->directions & 4) != 0 ? share : 0.0};
-        solid_loads_add_force(&solid->loads, force, n > 0 ? &table : NULL, set->n_nodes,
+        solid_loads_add_force(&solid->loads, force, varies ? &table : NULL, set->n_nodes,
                               set->nodes);
     } else {
         struct solid_side *sides = array_allocate((size_t)set->n_sides, sizeof *sides);
         for (int k = 0; k < set->n_sides; k++)
             sides[k] = (struct solid_side){set->sides[k].element, set->sides[k].side};
-        solid_loads_add_pressure(&solid->loads, value, n > 0 ? &table : NULL, set->n_sides,
+        solid_loads_add_pressure(&solid->loads, value, varies ? &table : NULL, set->n_sides,
                                  sides);
         free(sides);
     }
-    free(table.points);
+    solid_table_clear(&table);
 }
 
 static void prescribe(struct solid *solid, const struct solid_mesh *mesh,
@@ -168,8 +156,18 @@ static void share_out(struct deform_body *deform, const struct comm *comm)
     for (int i = 0; i < n; i++)
         order[i] = (struct place_of_node){solid->reference[i][along], i};
     qsort(order, (size_t)n, sizeof *order, compare_places);
-    for (int k = 0; k < n; k++)
-        deform->owner[order[k].node] = (int)((int64_t)k * comm->n_ranks / n);
+    deform->by_owner = array_allocate((size_t)n, sizeof *deform->by_owner);
+    deform->sizes = array_allocate((size_t)comm->n_ranks, sizeof *deform->sizes);
+    for (int k = 0; k < n; k++) {
+        const int q = (int)((int64_t)k * comm->n_ranks / n);
+        deform->by_owner[k] = order[k].node;
+        deform->owner[order[k].node] = q;
+        deform->sizes[q] += (int)sizeof *solid->node;
+        deform->first_own += q < comm->rank;
+    }
+    if (comm->n_ranks > 1)
+        deform->told = array_allocate_rows((size_t)n, sizeof *deform->told);
+    comm_mail_init(&deform->mail, comm);
     for (int i = 0; i < n; i++)
         moves[i] = deform->owner[i] == comm->rank;
     solid_assign(solid, moves);
@@ -216,6 +214,10 @@ void deform_clear(struct deform *deform)
         solid_destroy(&deform->list[k].solid);
         free(deform->list[k].nodes);
         free(deform->list[k].owner);
+        free(deform->list[k].by_owner);
+        free(deform->list[k].sizes);
+        free(deform->list[k].told);
+        comm_mail_clear(&deform->list[k].mail);
     }
     free(deform->list);
     *deform = (struct deform){0};
@@ -258,10 +260,11 @@ void deform_begin(struct simulation *sim)
         place_skin(&sim->deform.list[k], &sim->bodies.list[sim->deform.list[k].body]);
 }
 
+/* Sums of nothing are zero in every limb. */
 static bool is_pushed(const struct exact_sum force[3])
 {
     for (int x = 0; x < 3; x++)
-        if (force[x].n_terms != 0 || force[x].overflow != 0)
+        if ((force[x].limb[0] | force[x].limb[1] | force[x].limb[2] | force[x].overflow) != 0)
             return true;
     return false;
 }
@@ -272,32 +275,29 @@ struct push {
     struct exact_sum force[3];
 };
 
-static void exchange_pushes(const struct simulation *sim, const struct deform_body *deform,
+static void exchange_pushes(const struct simulation *sim, struct deform_body *deform,
                             struct body_skin *skin)
 {
     const struct comm *comm = sim->comm;
     const int n = sim->bodies.list[deform->body].mesh.n_corners;
-    struct comm_mail mail;
     struct push push;
     memset(&push, 0, sizeof push);
-    comm_mail_init(&mail, comm);
-    comm_mail_begin(&mail);
+    comm_mail_begin(&deform->mail);
     for (int v = 0; v < n; v++) {
         const int owner = deform->owner[deform->nodes[v]];
         if (owner == comm->rank || !is_pushed(skin->force[v]))
             continue;
         push.vertex = v;
         memcpy(push.force, skin->force[v], sizeof push.force);
-        comm_mail_pack(&mail, owner, &push, sizeof push);
+        comm_mail_pack(&deform->mail, owner, &push, sizeof push);
     }
-    comm_mail_exchange(&mail, comm);
+    comm_mail_exchange(&deform->mail, comm);
     for (int q = 0; q < comm->n_ranks; q++)
-        while (comm_mail_waits(&mail, q)) {
-            comm_mail_unpack(&mail, q, &push, sizeof push);
+        while (comm_mail_waits(&deform->mail, q)) {
+            comm_mail_unpack(&deform->mail, q, &push, sizeof push);
             for (int x = 0; x < 3; x++)
                 exact_sum_merge(&skin->force[push.vertex][x], &push.force[x]);
         }
-    comm_mail_clear(&mail);
 }
 
 /* Which element failed, and how. */
@@ -342,27 +342,12 @@ void deform_plan(struct simulation *sim)
 static void tell_places(struct deform_body *deform, const struct comm *comm)
 {
     struct solid *solid = &deform->solid;
-    const size_t size = sizeof *solid->node;
-    const int n = solid->n_nodes, n_ranks = comm->n_ranks;
-    int *sizes = array_allocate((size_t)n_ranks, sizeof *sizes);
-    int *at = array_allocate((size_t)n_ranks, sizeof *at);
-    struct solid_element_node *all = array_allocate_rows((size_t)n, size);
-    for (int i = 0; i < n; i++)
-        sizes[deform->owner[i]] += (int)size;
-    for (int q = 1; q < n_ranks; q++)
-        at[q] = at[q - 1] + sizes[q - 1] / (int)size;
-    struct solid_element_node *own =
-        array_allocate_rows((size_t)sizes[comm->rank] / size, size);
-    for (int i = 0, k = 0; i < n; i++)
-        if (deform->owner[i] == comm->rank)
-            own[k++] = solid->node[i];
-    comm_gather_parts(comm, own, all, sizes);
-    for (int i = 0; i < n; i++)
-        solid->node[i] = all[at[deform->owner[i]]++];
-    free(own);
-    free(all);
-    free(at);
-    free(sizes);
+    const int n_own = deform->sizes[comm->rank] / (int)sizeof *solid->node;
+    for (int k = deform->first_own; k < deform->first_own + n_own; k++)
+        deform->told[k] = solid->node[deform->by_owner[k]];
+    comm_gather_parts(comm, deform->told, deform->sizes);
+    for (int k = 0; k < solid->n_nodes; k++)
+        solid->node[deform->by_owner[k]] = deform->told[k];
 }
 
 void deform_move(struct simulation *sim)
@@ -439,33 +424,43 @@ double deform_critical_step(const struct simulation *sim, int *body)
 
 enum { NODES, ELEMENTS };
 
-static struct field_view view_of(const struct solid *solid, int table, int field)
+/* Copies the fields of a node or element behind each other into a record (`pack`), or back. */
+static void move_fields(const struct solid *solid, int which, int i, unsigned char *record,
+                        bool pack)
 {
-    return table == NODES ? solid_node_view(solid, (enum solid_node_field)field)
-                          : solid_element_view(solid, (enum solid_element_field)field);
+    const int n = which == NODES ? SOLID_NODE_N_FIELDS : SOLID_ELEMENT_N_FIELDS;
+    const struct field *fields = which == NODES ? solid_node_fields : solid_element_fields;
+    for (int f = 0; f < n; f++) {
+        const struct field_view view =
+            which == NODES ? solid_node_view(solid, (enum solid_node_field)f)
+                           : solid_element_view(solid, (enum solid_element_field)f);
+        const size_t size = field_size(&fields[f]);
+        memcpy(pack ? record : field_at(&view, i), pack ? field_at(&view, i) : record, size);
+        record += size;
+    }
+}
+
+/* Nodes or elements of a solid, and the id of the first. */
+static int rows_of(const struct deform_body *deform, int which, int64_t *first)
+{
+    *first = which == NODES ? deform->first_node : deform->first_element;
+    return which == NODES ? deform->solid.n_nodes : deform->solid.n_elements;
 }
 
 static void collect(struct table *table, const struct simulation *sim, int which, int64_t begin,
                     int64_t end)
 {
-    const struct field *fields = which == NODES ? solid_node_fields : solid_element_fields;
     unsigned char *record = array_allocate(1, table->record_size);
     for (int k = 0; k < sim->deform.n; k++) {
-        const struct deform_body *deform = &sim->deform.list[k];
-        const struct solid *solid = &deform->solid;
-        const int64_t first = which == NODES ? deform->first_node : deform->first_element;
-        const int n = which == NODES ? solid->n_nodes : solid->n_elements;
-        for (int i = 0; i < n; i++) {
-            const int64_t id = first + i;
+        const struct solid *solid = &sim->deform.list[k].solid;
+        int64_t id;
+        const int n = rows_of(&sim->deform.list[k], which, &id);
+        for (int i = 0; i < n; i++, id++) {
             const bool counts = which == NODES ? solid->moves[i] : solid_counts(solid, i);
             if (!counts || id < begin || id >= end)
                 continue;
             memcpy(record, &id, sizeof id);
-            for (int c = 1; c < table->n_columns; c++) {
-                const struct field_view view = view_of(solid, which, c - 1);
-                memcpy(record + table->columns[c].offset, field_at(&view, i),
-                       field_size(&fields[c - 1]));
-            }
+            move_fields(solid, which, i, record + sizeof id, true);
             table_append(table, record, 1);
         }
     }
@@ -503,26 +498,17 @@ int deform_tables(const struct simulation *sim, struct checkpoint_more *tables)
 
 void deform_restore(struct simulation *sim, const struct checkpoint_more *tables)
 {
-    for (int which = 0; sim->deform.n > 0 && which < 2; which++) {
-        const struct checkpoint_more *table = &tables[which];
-        for (int k = 0; k < sim->deform.n; k++) {
-            const struct deform_body *deform = &sim->deform.list[k];
-            const struct solid *solid = &deform->solid;
-            const int64_t first = which == NODES ? deform->first_node : deform->first_element;
-            const int n = which == NODES ? solid->n_nodes : solid->n_elements;
-            for (int i = 0; i < n; i++) {
-                const unsigned char *at =
-                    table->records + (size_t)(first + i) * table->record_size + sizeof(int64_t);
-                for (int f = 0; f < table->n_fields; f++) {
-                    const struct field_view view = view_of(solid, which, f);
-                    memcpy(field_at(&view, i), at, field_size(&table->fields[f]));
-                    at += field_size(&table->fields[f]);
-                }
-            }
-        }
-    }
     for (int k = 0; k < sim->deform.n; k++) {
         struct solid *solid = &sim->deform.list[k].solid;
+        for (int which = 0; which < 2; which++) {
+            int64_t id;
+            const int n = rows_of(&sim->deform.list[k], which, &id);
+            for (int i = 0; i < n; i++, id++)
+                move_fields(solid, which, i,
+                            tables[which].records + (size_t)id * tables[which].record_size +
+                                sizeof id,
+                            false);
+        }
         bool *moves = array_allocate((size_t)solid->n_nodes, sizeof *moves);
         memcpy(moves, solid->moves, (size_t)solid->n_nodes * sizeof *moves);
         solid_assign(solid, moves);

@@ -15,6 +15,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
+#include "base/comm.h"
 #include "solid/solid.h"
 #include "solid/solid_energy.h"
 
@@ -24,8 +25,13 @@ struct simulation;
 struct deform_body {
     int body; /* among the simulation's */
     struct solid solid;
-    int *nodes;                        /* of each corner of the skin */
-    int *owner;                        /* rank that moves each node */
+    int *nodes;                      /* of each corner of the skin */
+    int *owner;                      /* rank that moves each node */
+    int *by_owner;                   /* nodes, those of rank 0 first */
+    int first_own;                   /* in by_owner: where this rank's begin */
+    int *sizes;                      /* of each rank's nodes, as told [bytes] */
+    struct solid_element_node *told; /* all nodes by owner, on their way; of several ranks */
+    struct comm_mail mail;
     int64_t first_node, first_element; /* their ids, counted over all solids */
 };
 

@@ -5,6 +5,19 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "job/job.h"
+#include "model/solid_condition.h"
+
+struct solid_table solid_table_of(const struct solid_condition *condition)
+{
+    const int n = condition->n > 0 ? condition->n : 1;
+    struct solid_table table = {n, array_allocate((size_t)n, sizeof *table.points)};
+    table.points[0].value = condition->constant;
+    for (int k = 0; k < condition->n; k++)
+        table.points[k] =
+            (struct solid_table_point){condition->rows[k].time, condition->rows[k].value};
+    return table;
+}
 
 struct solid_table solid_table_copy(const struct solid_table *table)
 {

@@ -13,6 +13,10 @@ struct solid_table {
     struct solid_table_point *points;
 };
 
+struct solid_condition;
+
+/* A condition's values over time; the caller clears it. */
+struct solid_table solid_table_of(const struct solid_condition *condition);
 struct solid_table solid_table_copy(const struct solid_table *table);
 void solid_table_clear(struct solid_table *table);
 double solid_table_value(const struct solid_table *table, double time);

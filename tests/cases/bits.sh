@@ -8,17 +8,6 @@ set -uo pipefail
 # shellcheck source=tests/cases/common.sh
 . "$(dirname "$0")/common.sh"
 
-# like REFERENCE RANKS NAME SCENE OPTIONS...: a run that is to equal the reference.
-like()
-{
-    local reference=$1 ranks=$2 name=$3 scene=$4
-    shift 4
-    run "$ranks" this "$scene" "$@"
-    [ -n "$why" ] || same_run "$reference" this
-    result "$name"
-    rm -rf this
-}
-
 # reference NAME SCENE OPTIONS...: an undisturbed run on one rank.
 reference()
 {

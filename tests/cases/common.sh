@@ -64,6 +64,17 @@ result()
     why=
 }
 
+# like REFERENCE RANKS NAME SCENE OPTIONS...: a run that is to equal the reference.
+like()
+{
+    local reference=$1 ranks=$2 name=$3 scene=$4
+    shift 4
+    run "$ranks" this "$scene" "$@"
+    [ -n "$why" ] || same_run "$reference" this
+    result "$name"
+    rm -rf this
+}
+
 # ---- Runs that are killed
 
 job= # process id of a run in the background

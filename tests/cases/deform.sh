@@ -14,27 +14,14 @@ result "spheres on solids, on 1 rank"
 counts="2 3 4 5 8"
 [ -n "$thorough" ] || counts=3
 for ranks in $counts; do
-    run "$ranks" this deform
-    [ -n "$why" ] || same_run one this
-    result "on $ranks ranks"
-    rm -rf this
+    like one "$ranks" "on $ranks ranks" deform
 done
-
-like() # like RANKS NAME OPTIONS...
-{
-    local ranks=$1 name=$2
-    shift 2
-    run "$ranks" this deform "$@"
-    [ -n "$why" ] || same_run one this
-    result "$name"
-    rm -rf this
-}
-like 2 "search every 7 steps" --set testing.search_every=7
-like 1 "all pairs" --set testing.search=all-pairs
-like 3 "other subdomains" --set decomposition.grid=[1,3,1] --set decomposition.buffer=0.02
+like one 2 "search every 7 steps" deform --set testing.search_every=7
+like one 1 "all pairs" deform --set testing.search=all-pairs
+like one 3 "other subdomains" deform --set decomposition.grid=[1,3,1] --set decomposition.buffer=0.02
 for isa in generic v2 v3 v4; do
     if tremie 1 check "$scenes/deform.yaml" --isa $isa; then
-        like 1 "kernels of $isa" --isa $isa
+        like one 1 "kernels of $isa" deform --isa $isa
     else
         grep -q "isa $isa does not run" said || echo "FAIL kernels of $isa: $(head -n 1 said)"
     fi

@@ -20,19 +20,9 @@ contacts tube
 contacts funnel
 result "round, the curved surfaces are touched"
 
-# like RANKS NAME OPTIONS...: a run that is to equal the reference.
-like()
-{
-    local ranks=$1 name=$2
-    shift 2
-    run "$ranks" this round "$@"
-    [ -n "$why" ] || same_run reference this
-    result "$name"
-    rm -rf this
-}
-like 3 "round on 3 ranks, search every 7 steps" --set testing.search_every=7
-[ -z "$thorough" ] || like 1 "round, all pairs" --set testing.search=all-pairs
-[ -z "$thorough" ] || like 8 "round on 8 ranks" --set testing.repartition_every=50
+like reference 3 "round on 3 ranks, search every 7 steps" round --set testing.search_every=7
+[ -z "$thorough" ] || like reference 1 "round, all pairs" round --set testing.search=all-pairs
+[ -z "$thorough" ] || like reference 8 "round on 8 ranks" round --set testing.repartition_every=50
 
 run 2 this round --set time.end=0.3
 run 3 this round
