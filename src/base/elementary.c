@@ -1,12 +1,13 @@
 /*
- * Sine, cosine, logarithm and exponential by range reduction and Taylor series: see
- * elementary.h.
+ * Sine, cosine, logarithm, exponential and arcus tangent by range reduction and Taylor series:
+ * see elementary.h.
  *
  * Angles: x - n pi/2 with pi/2 cut into pieces of 24 bits, so that n times a piece is exact for
  * |n| < 2^29; what the one inexact subtraction drops is kept as a tail.  The remainder lies
  * within +-pi/4, where the series to r^17 leaves 1e-19.
  * Logarithm: x = 2^k m with m within sqrt(1/2)..sqrt(2), then 2 atanh((m-1)/(m+1)).
  * Exponential: x = n ln 2 + r with |r| <= ln(2)/2, then the series to r^14.
+ * Arcus tangent: t within 0..1 is taken relative to the nearest eighth; the series to r^15.
  * Taylor series need a term or two more than minimax polynomials, but their coefficients
  * explain themselves; nothing here is hot.
  */
@@ -154,4 +155,37 @@ double elementary_exp(double x)
     /* Two factors, since 2^n alone may not be a normal number. */
     const int half = (int)n / 2;
     return value * power_of_two(half) * power_of_two((int)n - half);
+}
+
+/* Of 0 <= t <= 1. */
+static double atan_to_one(double t)
+{
+    static const double eighths[] = {0.0,
+                                     0x1.fd5ba9aac2f6ep-4,
+                                     0x1.f5b75f92c80ddp-3,
+                                     0x1.6f61941e4def1p-2,
+                                     0x1.dac670561bb4fp-2,
+                                     0x1.1e00babdefeb4p-1,
+                                     0x1.4978fa3269ee1p-1,
+                                     0x1.700a7c5784634p-1,
+                                     0x1.921fb54442d18p-1};
+    const int k = (int)(8.0 * t + 0.5);
+    const double near = 0.125 * (double)k, r = (t - near) / (1.0 + t * near), z = r * r;
+    double p = 0.0;
+    for (int odd = 15; odd >= 3; odd -= 2)
+        p = 1.0 / (double)odd - z * p;
+    return eighths[k] + (r - r * z * p);
+}
+
+double elementary_atan2(double y, double x)
+{
+    const double up = y < 0.0 ? -y : y, along = x < 0.0 ? -x : x;
+    if (x != x || y != y)
+        return (double)NAN;
+    if (!(up > 0.0 || along > 0.0))
+        return 0.0;
+    double angle =
+        up > along ? 0x1.921fb54442d18p+0 - atan_to_one(along / up) : atan_to_one(up / along);
+    angle = x < 0.0 ? 0x1.921fb54442d18p+1 - angle : angle;
+    return y < 0.0 ? -angle : angle;
 }

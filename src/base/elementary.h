@@ -14,5 +14,7 @@ double elementary_cos(double x);
 /* -infinity at 0, NaN below. */
 double elementary_log(double x);
 double elementary_exp(double x);
+/* Angle of the direction (x, y), from -pi to pi; 0 where both are. */
+double elementary_atan2(double y, double x);
 
 #endif

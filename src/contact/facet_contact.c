@@ -22,6 +22,7 @@
 #include "base/report.h"
 #include "contact/facet_kernel.h"
 #include "contact/facet_local.h"
+#include "contact/facet_patch.h"
 #include "contact/facet_tree.h"
 #include "model/body.h"
 #include "model/material.h"
@@ -39,6 +40,14 @@ struct group {
     struct vec3 from; /* where the sphere was [m] */
 };
 
+/* What a batch's contact pushes of a surface that deforms. */
+struct pushed {
+    int begin, end;      /* corners; none of a contact that ends */
+    double pressure;     /* of the normal spring [Pa] */
+    struct vec3 elastic; /* its force, on the body [N] */
+    bool holds_energy;   /* of the normal spring: of several parts one does */
+};
+
 struct facet_work {
     struct facet_tree *trees; /* one a body */
     bool has_trees;
@@ -46,11 +55,14 @@ struct facet_work {
     int next_capacity;
     struct facet_contact *next; /* the list that is being made */
     struct facet_local local;
+    struct facet_patch patch;
     enum isa isa;
     struct facet_kernel_batch batch;
-    struct contact_geometry_shares shares[FACET_KERNEL_BATCH]; /* of bodies that deform */
-    struct facet_kernel_load *loads;                           /* one a body */
-    int n_summed;                                              /* contacts in them, at most */
+    struct pushed pushed[FACET_KERNEL_BATCH]; /* of bodies that deform */
+    int n_corners, corner_capacity;
+    struct facet_patch_corner *corners; /* of the batch's contacts with such bodies */
+    struct facet_kernel_load *loads;    /* one a body */
+    int n_summed;                       /* contacts in them, at most */
     struct facet_contact dummy;
     bool has_groups; /* and runs */
     int n_runs, run_capacity, n_plain, plain_capacity, faced_capacity;
@@ -112,6 +124,8 @@ void facet_contacts_clear(struct facet_contacts *facets)
     free(work->near);
     free(work->travelled);
     facet_local_clear(&work->local);
+    facet_patch_clear(&work->patch);
+    free(work->corners);
     free(work);
     free(facets->list);
     free(facets->loads);
@@ -264,6 +278,13 @@ static void find_features(struct facet_work *work, int b, const struct mesh *mes
         find_across(work, b, mesh, spheres, i, reach);
 }
 
+/* Of a body that deforms spheres meet faces alone; features ascend, faces first. */
+static void keep_faces(struct facet_tree_found *found, const struct mesh *mesh)
+{
+    while (found->n > 0 && found->features[found->n - 1] >= mesh->n_faces)
+        found->n--;
+}
+
 void facet_contacts_search(struct facet_contacts *facets, const struct spheres *spheres,
                            const struct bodies *bodies, const double *body_allowance,
                            bool all_pairs)
@@ -280,6 +301,8 @@ void facet_contacts_search(struct facet_contacts *facets, const struct spheres *
                 find_all_features(found, mesh);
             else
                 find_features(work, b, mesh, spheres, i, body_allowance[b]);
+            if (bodies->list[b].skin != NULL)
+                keep_faces(found, mesh);
             for (int k = 0; k < found->n; k++)
                 list_contact(facets,
                              (struct facet_contact){
@@ -401,24 +424,31 @@ static void make_room(struct facet_contacts *facets, int n)
     facets->work->n_summed += n;
 }
 
-/* Gives the force of a batch's contact to the corners of a surface that deforms.  Shares are
- * rounded as the sums round them; the last one is what is left, so that they add up to the
+/* Gives the force of a batch's contact to the corners of a surface that deforms: that of the
+ * normal spring as a pressure on the covered area, all else by the corners' weights.  Shares
+ * are rounded as the sums round them; the last one is what is left, so that they add up to the
  * force. */
 static void push_skin(const struct step *step, int k)
 {
-    const struct facet_kernel_batch *batch = &step->facets->work->batch;
-    const struct body_skin *skin = step->bodies->list[batch->contact[k]->body].skin;
-    const struct contact_geometry_shares *shares = &step->facets->work->shares[k];
-    if (skin == NULL)
+    const struct facet_work *work = step->facets->work;
+    const struct body_skin *skin = step->bodies->list[work->batch.contact[k]->body].skin;
+    const struct pushed *pushed = &work->pushed[k];
+    if (skin == NULL || pushed->begin == pushed->end)
         return;
+    const double elastic[3] = {pushed->elastic.x, pushed->elastic.y, pushed->elastic.z};
+    struct exact_sum *last = skin->force[work->corners[pushed->end - 1].corner];
     for (int x = 0; x < 3; x++) {
-        struct exact_sum *last = &skin->force[shares->vertices[shares->n - 1]][x];
-        exact_sum_add(last, batch->force[x][k]);
-        for (int m = 0; m < shares->n - 1; m++) {
-            const double share = shares->parts[m] * batch->force[x][k];
-            exact_sum_add(last, -exact_sum_add(&skin->force[shares->vertices[m]][x], share));
+        const double force = work->batch.force[x][k], rest = force - elastic[x];
+        exact_sum_add(&last[x], force);
+        for (int c = pushed->begin; c < pushed->end - 1; c++) {
+            const struct facet_patch_corner *corner = &work->corners[c];
+            const double area[3] = {corner->pushed.x, corner->pushed.y, corner->pushed.z};
+            const double share = corner->weight * rest - pushed->pressure * area[x];
+            exact_sum_add(&last[x], -exact_sum_add(&skin->force[corner->corner][x], share));
         }
     }
+    if (!pushed->holds_energy)
+        work->batch.contact[k]->overlap = 0.0;
 }
 
 static void empty_batch(const struct step *step)
@@ -430,7 +460,7 @@ static void empty_batch(const struct step *step)
     step->kernel.batch(step->kernel_work, batch);
     for (int k = 0; k < batch->n; k++)
         push_skin(step, k);
-    batch->n = 0;
+    batch->n = step->facets->work->n_corners = 0;
 }
 
 static void apply_run(const struct step *step, const struct facet_kernel_run *run)
@@ -439,23 +469,37 @@ static void apply_run(const struct step *step, const struct facet_kernel_run *ru
     step->kernel.run(step->kernel_work, run);
 }
 
-static struct vec3 skin_velocity(const struct body_skin *skin,
-                                 const struct contact_geometry_shares *shares)
+static void put_lanes(double places[3][FACET_KERNEL_BATCH], int k, struct vec3 value)
 {
-    struct vec3 velocity = {0.0, 0.0, 0.0};
-    for (int m = 0; m < shares->n; m++)
-        velocity = vec3_axpy(velocity, shares->parts[m], skin->velocity[shares->vertices[m]]);
-    return velocity;
+    places[0][k] = value.x;
+    places[1][k] = value.y;
+    places[2][k] = value.z;
 }
 
-/* How easily the surface yields to a force at the shares' point [1/kg]. */
-static double skin_yield(const struct body_skin *skin,
-                         const struct contact_geometry_shares *shares)
+/* Puts a contact into the batch, of a body that does not move; returns where. */
+static int add_resting(const struct step *step, int entry, const struct contact_geometry *at,
+                       double overlap)
 {
-    double yield = 0.0;
-    for (int m = 0; m < shares->n; m++)
-        yield += shares->parts[m] * shares->parts[m] * skin->inverse_mass[shares->vertices[m]];
-    return yield;
+    struct facet_kernel_batch *batch = &step->facets->work->batch;
+    const struct facet_kernel_work *work = step->kernel_work;
+    struct facet_contact *contact = &step->facets->list[entry];
+    if (batch->n == FACET_KERNEL_BATCH)
+        empty_batch(step);
+    const int k = batch->n++;
+    batch->contact[k] = contact;
+    batch->sphere[k] = contact->sphere;
+    batch->load[k] = &step->facets->work->loads[contact->body];
+    batch->pair[k] = &work->pairs[work->material[contact->sphere] * work->n_materials +
+                                  step->bodies->list[contact->body].material];
+    put_lanes(batch->normal, k, vec3_scale(-1.0, at->normal)); /* sphere to body */
+    put_lanes(batch->point, k, at->point);
+    put_lanes(batch->wall, k, (struct vec3){0.0, 0.0, 0.0});
+    put_lanes(batch->turns, k, (struct vec3){0.0, 0.0, 0.0});
+    batch->overlap[k] = overlap;
+    batch->yield[k] = 0.0;
+    batch->width[k] = 1.0;
+    step->facets->work->pushed[k] = (struct pushed){0};
+    return k;
 }
 
 /* Puts a contact into the batch; one that ends has no overlap, and what its spring still held
@@ -464,41 +508,86 @@ static void add_contact(const struct step *step, int entry, const struct contact
                         double overlap)
 {
     struct facet_kernel_batch *batch = &step->facets->work->batch;
-    if (batch->n == FACET_KERNEL_BATCH)
-        empty_batch(step);
-    const int k = batch->n++;
-    struct facet_contact *contact = &step->facets->list[entry];
+    const struct body *body = &step->bodies->list[step->facets->list[entry].body];
+    const int k = add_resting(step, entry, at, overlap);
+    const struct vec3 normal = vec3_scale(-1.0, at->normal);
+    if (body->rigid != NULL)
+        batch->yield[k] = rigid_yield(body->rigid, at->point, normal);
+    if (body->moves || body->surface_runs) {
+        put_lanes(batch->wall, k, body_velocity(body, at->point, normal));
+        put_lanes(batch->turns, k, body_spin(body));
+    }
+}
+
+/* ---- Surfaces that deform
+ * ----------------------------------------------------------------------- */
+
+static const double PI = 3.14159265358979323846;
+
+/* How the covered part of the surface moves [m/s], and how easily it yields [1/kg]. */
+static void move_with_skin(const struct step *step, const struct body_skin *skin, int k)
+{
+    struct facet_work *work = step->facets->work;
+    const struct pushed *pushed = &work->pushed[k];
+    struct vec3 velocity = {0.0, 0.0, 0.0};
+    double yield = 0.0;
+    for (int c = pushed->begin; c < pushed->end; c++) {
+        const struct facet_patch_corner *corner = &work->corners[c];
+        velocity = vec3_axpy(velocity, corner->weight, skin->velocity[corner->corner]);
+        yield += corner->weight * corner->weight * skin->inverse_mass[corner->corner];
+    }
+    put_lanes(work->batch.wall, k, velocity);
+    work->batch.yield[k] = yield;
+}
+
+/* Takes the corners of a part over for contact k. */
+static void keep_corners(struct facet_work *work, int k, const struct facet_patch *patch,
+                         const struct facet_patch_part *part)
+{
+    const int n = part->end - part->begin;
+    ARRAY_GROW(work->corners, work->n_corners + n, work->corner_capacity);
+    memcpy(work->corners + work->n_corners, patch->corners + part->begin,
+           (size_t)n * sizeof *work->corners);
+    work->pushed[k].begin = work->n_corners;
+    work->pushed[k].end = work->n_corners += n;
+}
+
+/* The contact on a smooth part of the surface. (2.7) */
+static void add_part(const struct step *step, int begin, const struct facet_patch_part *part)
+{
+    struct facet_work *work = step->facets->work;
+    const struct facet_patch *patch = &work->patch;
+    const struct facet_contact *contact = &step->facets->list[begin + part->entry];
+    const double radius = sphere_radius(step->spheres, contact->sphere);
+    const double facing = vec3_norm(part->facing), inverse = 1.0 / facing;
+    const struct vec3 centre = sphere_place(step->spheres, contact->sphere);
+    struct contact_geometry at = {.normal = vec3_scale(inverse, part->facing)};
+    at.point = vec3_axpy(centre, patch->depth - radius, at.normal); /* pressure has no moment */
+    const int k = add_resting(step, begin + part->entry, &at, patch->depth);
+    const double plane = PI * patch->depth * (2.0 * radius - patch->depth); /* [m2] */
+    const double curvature = sphere_curvature(step->spheres, contact->sphere);
+    const double pressure =
+        contact_law_normal_force(patch->depth, curvature, work->batch.pair[k]) / plane;
+    work->batch.width[k] = facing / plane;
+    work->pushed[k] = (struct pushed){.pressure = pressure,
+                                      .elastic = vec3_scale(-pressure, part->facing),
+                                      .holds_energy = part == patch->parts};
+    keep_corners(work, k, patch, part);
+    move_with_skin(step, step->bodies->list[contact->body].skin, k);
+}
+
+/* A contact that has ended, as seen from the face that it was on last. */
+static void end_part(const struct step *step, int entry)
+{
+    struct facet_work *work = step->facets->work;
+    const struct facet_contact *contact = &step->facets->list[entry];
     const struct body *body = &step->bodies->list[contact->body];
-    const struct facet_kernel_work *work = step->kernel_work;
-    const struct vec3 normal = vec3_scale(-1.0, at->normal); /* sphere to body */
-    struct vec3 wall = {0.0, 0.0, 0.0}, turns = {0.0, 0.0, 0.0};
-    double yield = body->rigid != NULL ? rigid_yield(body->rigid, at->point, normal) : 0.0;
-    if (body->skin != NULL) {
-        struct contact_geometry_shares *shares = &step->facets->work->shares[k];
-        *shares = contact_geometry_shares(&body->mesh, contact->feature, at->point);
-        wall = skin_velocity(body->skin, shares);
-        yield = skin_yield(body->skin, shares);
-    } else if (body->moves || body->surface_runs) {
-        wall = body_velocity(body, at->point, normal);
-        turns = body_spin(body);
-    }
-    const double values[4][3] = {{normal.x, normal.y, normal.z},
-                                 {at->point.x, at->point.y, at->point.z},
-                                 {wall.x, wall.y, wall.z},
-                                 {turns.x, turns.y, turns.z}};
-    batch->contact[k] = contact;
-    batch->sphere[k] = contact->sphere;
-    batch->load[k] = &step->facets->work->loads[contact->body];
-    batch->pair[k] =
-        &work->pairs[work->material[contact->sphere] * work->n_materials + body->material];
-    for (int x = 0; x < 3; x++) {
-        batch->normal[x][k] = values[0][x];
-        batch->point[x][k] = values[1][x];
-        batch->wall[x][k] = values[2][x];
-        batch->turns[x][k] = values[3][x];
-    }
-    batch->overlap[k] = overlap;
-    batch->yield[k] = yield;
+    facet_patch_whole(&work->patch, body, contact->feature);
+    const struct facet_patch_part *part = work->patch.parts;
+    const struct contact_geometry at = {.normal = part->facing};
+    const int k = add_resting(step, entry, &at, 0.0);
+    keep_corners(work, k, &work->patch, part);
+    move_with_skin(step, body->skin, k);
 }
 
 /* What a body that is not there still holds ends. */
@@ -669,19 +758,38 @@ static void count_travel(const struct step *step)
                 1.001 * step->bodies->list[b].speed_max * step->kernel_work->dt;
 }
 
+/* Those with a body that deforms. */
+static void gather_parts(const struct step *step, const struct group *place, struct vec3 centre,
+                         double radius)
+{
+    struct facet_patch *patch = &step->facets->work->patch;
+    struct facet_contact *group = &step->facets->list[place->begin];
+    facet_patch_search(patch, group, &step->facets->work->near[place->begin], place->n_near,
+                       &step->bodies->list[group->body], centre, radius);
+    for (int p = 0; p < patch->n_parts; p++)
+        add_part(step, place->begin, &patch->parts[p]);
+    for (int e = 0; e < patch->n_ended; e++)
+        end_part(step, place->begin + patch->ended[e]);
+}
+
 /* The contacts of one sphere with one body. */
 static void gather_group(const struct step *step, struct group *place)
 {
     const int begin = place->begin;
     struct facet_contact *group = &step->facets->list[begin];
     struct facet_local *local = &step->facets->work->local;
-    const struct mesh *mesh = &step->bodies->list[group->body].mesh;
+    const struct body *body = &step->bodies->list[group->body];
+    const struct mesh *mesh = &body->mesh;
     const struct vec3 centre = sphere_place(step->spheres, group->sphere);
     const double radius = sphere_radius(step->spheres, group->sphere);
     if (must_look(step, place, centre))
         look_around(step, place, centre);
     if (place->n_near == 0)
         return;
+    if (body->skin != NULL) {
+        gather_parts(step, place, centre, radius);
+        return;
+    }
     facet_local_search(local, group, &step->facets->work->near[begin], place->n_near, mesh,
                        &step->spheres->periodic, centre, radius);
     for (int t = 0; t < local->n_touches; t++) {
@@ -739,9 +847,10 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
         apply_run(&step, &work->runs[r]);
     for (int g = 0; g < work->n_groups; g++) {
         struct group *group = &work->groups[g];
-        if (!bodies->list[facets->list[group->begin].body].exists)
+        const struct body *body = &bodies->list[facets->list[group->begin].body];
+        if (!body->exists)
             end_group(&step, group->begin, group->end);
-        else if (group->end == group->begin + 1)
+        else if (group->end == group->begin + 1 && body->skin == NULL)
             gather_one(&step, group->begin);
         else
             gather_group(&step, group);

@@ -1,6 +1,6 @@
 /*
- * Contacts between spheres and the features (faces, edges, vertices) of rigid bodies, with
- * history.
+ * Contacts between spheres and the features (faces, edges, vertices) of bodies, with history;
+ * of bodies that deform, which are met by faces alone, see facet_patch.h.
  *
  * Global search gives, for each owned sphere, the features of each body within the sphere's
  * radius and allowance (and the body's own allowance). Local search computes, each step, the

@@ -52,6 +52,7 @@ struct facet_kernel_batch {
     double wall[3][FACET_KERNEL_BATCH];   /* velocity of the body's surface there [m/s] */
     double turns[3][FACET_KERNEL_BATCH];  /* its angular velocity [rad/s] */
     double yield[FACET_KERNEL_BATCH];     /* inverse mass of the body there [1/kg] */
+    double width[FACET_KERNEL_BATCH];     /* of the contact, over that on a plane [-] */
     double force[3][FACET_KERNEL_BATCH];  /* out: on the body, as its sums took it [N] */
 } __attribute__((aligned(64)));
 

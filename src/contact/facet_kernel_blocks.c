@@ -27,9 +27,9 @@ struct block {
     int sphere[WIDTH];
     struct facet_kernel_load *load[WIDTH];
     const struct material_pair *pair[WIDTH];
-    lanes motion[8], spin[8];                                     /* rows of the spheres */
-    lanes normal[3], point[3], overlap, wall[3], turns[3], yield; /* as in a batch */
-    bool one_load;                                                /* all lanes have the same */
+    lanes motion[8], spin[8]; /* rows of the spheres */
+    lanes normal[3], point[3], overlap, wall[3], turns[3], yield, width; /* as in a batch */
+    bool one_load;  /* all lanes have the same */
     bool moves;     /* some body of the block does */
     lanes given[3]; /* force on the body, as its sums took it [N] */
 };
@@ -126,6 +126,7 @@ LANES_INLINE struct contact_law_meeting meeting_of(const struct block *block)
 {
     struct contact_law_meeting meeting = {.overlap = block->overlap,
                                           .inverse_radius = block->spin[3],
+                                          .width = block->width,
                                           .inverse_mass = block->spin[7] + block->yield};
     lanes rolling[3]; /* R w x n [m/s] */
     cross(block->spin, block->normal, rolling);
@@ -258,7 +259,7 @@ static void pad(const struct facet_kernel_work *work, struct facet_kernel_batch 
         batch->sphere[k] = work->dummy->sphere;
         batch->load[k] = batch->load[batch->n - 1];
         batch->pair[k] = batch->pair[batch->n - 1];
-        batch->overlap[k] = batch->yield[k] = 0.0;
+        batch->overlap[k] = batch->yield[k] = batch->width[k] = 0.0;
         for (int x = 0; x < 3; x++)
             batch->normal[x][k] = batch->point[x][k] = batch->wall[x][k] = batch->turns[x][k] =
                 0.0;
@@ -286,6 +287,7 @@ LANES_INLINE void block_of_batch(struct block *block, const struct facet_kernel_
     }
     block->overlap = lanes_load(&batch->overlap[k]);
     block->yield = lanes_load(&batch->yield[k]);
+    block->width = lanes_load(&batch->width[k]);
     block->moves = true;
 }
 
@@ -427,7 +429,10 @@ LANES_INLINE void apply_run(struct facet_kernel_work *work, const struct facet_k
     const struct body *body = run->body;
     const struct face face = face_of(&body->mesh, run->face);
     lanes deepest = lanes_all(0.0);
-    struct block block = {.one_load = true, .moves = body->moves, .yield = lanes_all(0.0)};
+    struct block block = {.one_load = true,
+                          .moves = body->moves,
+                          .yield = lanes_all(0.0),
+                          .width = lanes_all(1.0)};
     struct drift drift;
 
     spread(body->velocity_now, drift.velocity);

@@ -108,6 +108,7 @@ LANES_INLINE struct contact_law_meeting block_meeting(const struct block *block,
         .normal = {x[0] * inverse, x[1] * inverse, x[2] * inverse},
         .overlap = lanes_keep(overlap > lanes_all(0.0), overlap),
         .inverse_radius = s[3],
+        .width = lanes_all(1.0),
         .inverse_mass = w[3],
     };
     const lanes *n = meeting.normal, half = 0.5 * meeting.overlap;

@@ -180,24 +180,54 @@ static void copy_motions(struct body *body, const struct job_body *asked)
     }
 }
 
-/* At rest, and as if it could not yield: run/deform knows better. */
-static struct body_skin *skin_build(int n_corners)
+/* Faces whose normals differ by more than this (cosine of 40 degrees) meet in an edge. */
+static const double SMOOTH = 0.766044443118978;
+
+static int first_of(int *smooth, int face)
 {
-    const size_t n = (size_t)n_corners;
+    while (smooth[face] != face)
+        face = smooth[face] = smooth[smooth[face]];
+    return face;
+}
+
+/* Faces that are one smooth part of the surface, by the first of them. */
+static int *find_smooth(const struct mesh *mesh)
+{
+    int *smooth = array_allocate((size_t)mesh->n_faces, sizeof *smooth);
+    for (int f = 0; f < mesh->n_faces; f++)
+        smooth[f] = f;
+    for (int e = 0; e < mesh->n_edges; e++) {
+        const int *faces = mesh->edges[e].faces;
+        if (faces[1] < 0 ||
+            vec3_dot(mesh->face_normal[faces[0]], mesh->face_normal[faces[1]]) < SMOOTH)
+            continue;
+        const int a = first_of(smooth, faces[0]), b = first_of(smooth, faces[1]);
+        smooth[a > b ? a : b] = a < b ? a : b;
+    }
+    for (int f = 0; f < mesh->n_faces; f++)
+        smooth[f] = first_of(smooth, f);
+    return smooth;
+}
+
+struct body_skin *body_skin_build(const struct mesh *mesh)
+{
+    const size_t n = (size_t)mesh->n_corners;
     struct body_skin *skin = array_allocate(1, sizeof *skin);
+    skin->smooth = find_smooth(mesh);
     skin->velocity = array_allocate(n, sizeof *skin->velocity);
     skin->inverse_mass = array_allocate(n, sizeof *skin->inverse_mass);
     skin->force = array_allocate(n, sizeof *skin->force);
     return skin;
 }
 
-static void skin_free(struct body_skin *skin)
+void body_skin_free(struct body_skin *skin)
 {
     if (skin == NULL)
         return;
     free(skin->velocity);
     free(skin->inverse_mass);
     free(skin->force);
+    free(skin->smooth);
     free(skin);
 }
 
@@ -219,7 +249,7 @@ static void body_build(struct body *body, const struct job_body *asked, double e
         return;
     }
     if (asked->model == JOB_MODEL_SOLID) {
-        body->skin = skin_build(body->mesh.n_corners);
+        body->skin = body_skin_build(&body->mesh);
         body->moves = true;
         return;
     }
@@ -254,7 +284,7 @@ void bodies_clear(struct bodies *bodies)
         free(body->motions);
         free(body->surface);
         free(body->rigid);
-        skin_free(body->skin);
+        body_skin_free(body->skin);
         free(body->name);
         mesh_clear(&body->mesh);
     }

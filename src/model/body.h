@@ -19,13 +19,18 @@ struct job;
 struct job_motion;
 struct rigid;
 
-/* How the surface of a body that deforms moves, and what pushes it: at each corner of the mesh
- * (vertices below n_corners). */
+/* The surface of a body that deforms: how it moves and what pushes it, at each corner of the
+ * mesh (vertices below n_corners), and what of it was smooth at the start. */
 struct body_skin {
     struct vec3 *velocity;        /* half a step before [m/s] */
     double *inverse_mass;         /* [1/kg] */
     struct exact_sum (*force)[3]; /* of this step's contacts, added to by them [N] */
+    int *smooth; /* of each face: the first one of those that it goes on to without an edge */
 };
+
+/* Of a surface at rest, as if it could not yield. */
+struct body_skin *body_skin_build(const struct mesh *mesh);
+void body_skin_free(struct body_skin *skin);
 
 struct body {
     char *name;

@@ -44,20 +44,6 @@ bool contact_geometry_touches(const struct mesh *mesh, int feature, struct vec3 
 struct contact_geometry contact_geometry_closest(const struct mesh *mesh, int feature,
                                                  struct vec3 centre);
 
-/* What part of a force at a point of a feature acts on which corners of the mesh: the same
- * resultant and moment as the force itself. */
-struct contact_geometry_shares {
-    int n;
-    int vertices[4]; /* corners: never mean points of warped quads */
-    double parts[4]; /* their sum is 1; negative only where the point is outside by rounding */
-};
-
-/* Of faces, edges and vertices: triangles by area, quads as four triangles about their mean
- * point, warped or flat; edges and vertices alike. A point that is off a face counts as its
- * foot on the face's plane. */
-struct contact_geometry_shares contact_geometry_shares(const struct mesh *mesh, int feature,
-                                                       struct vec3 point);
-
 /* May any point of the feature lie within reach of the centre?  Never wrong when it says no. */
 bool contact_geometry_reaches(const struct mesh *mesh, int feature, struct vec3 centre,
                               double reach);

@@ -82,6 +82,7 @@ struct contact_law_meeting {
     lanes velocity[3];    /* of the second's surface less the first's, at the contact [m/s] */
     lanes overlap;        /* [m]; 0 where they do not touch, never negative */
     lanes inverse_radius; /* 1/R*: sum of the two curvatures [1/m] */
+    lanes width;          /* of the contact, over what the law takes it for [-] */
     lanes inverse_mass;   /* 1/m*: sum of the two inverse masses [1/kg] */
     lanes spin[3];        /* of a full law: the second's spin less the first's [rad/s] */
 };
@@ -426,8 +427,9 @@ LANES_INLINE void contact_law(const struct contact_law_meeting *meeting,
     lanes v_t[3] = {meeting->velocity[0], meeting->velocity[1], meeting->velocity[2]};
 
     const lanes squared = meeting->overlap * (1.0 / meeting->inverse_radius);
-    work.radius = lanes_sqrt(
-        lanes_where(pair->linear, lanes_keep(work.touching, one), squared)); /* (1.4) */
+    work.radius =
+        meeting->width * lanes_sqrt(lanes_where(pair->linear, lanes_keep(work.touching, one),
+                                                squared)); /* (1.4) */
     work.v_n = contact_law_flatten(v_t, meeting->normal);
     contact_law_push(&work, meeting, pair, history, result);
     work.inverse_old = one / radius_old;
@@ -438,7 +440,7 @@ LANES_INLINE void contact_law(const struct contact_law_meeting *meeting,
     if (lanes_any(begins)) { /* a spring of full stiffness for part of the step (1.33) */
         const lanes part = meeting->overlap / (-work.v_n * dt);
         const lanes_mask within = (part < one) & (part > lanes_all(0.0));
-        work.middle = lanes_where(begins & within, part, work.middle);
+        work.middle = lanes_where(begins & within, part * work.radius, work.middle);
     }
     work.stretch = pair->tangential * dt * work.middle; /* (1.11) */
     result->lost_friction = result->lost_damping = result->wound = lanes_all(0.0);
@@ -470,6 +472,14 @@ LANES_INLINE double contact_law_spring_energy(const struct material_pair *pair,
                            contact_law_dot(rolling, rolling) + twisting * twisting;
     const double radius = history[CONTACT_LAW_RADIUS];
     return radius > 0.0 ? springs / (2.0 * pair->tangential * radius) : 0.0;
+}
+
+/* Force of the normal spring of a contact as wide as the law takes it for [N].  (1.5) */
+LANES_INLINE double contact_law_normal_force(double overlap, double inverse_radius,
+                                             const struct material_pair *pair)
+{
+    const double radius = pair->linear > 0.0 ? 1.0 : sqrt(overlap / inverse_radius); /* [m] */
+    return pair->normal * radius * overlap;
 }
 
 /* Elastic energy of the normal spring [J].  (1.15) */

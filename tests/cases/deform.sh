@@ -57,3 +57,16 @@ else
     why=" $(tail -n 1 seen);"
     result "plastic flow, the balance of energy, spheres on deforming facets"
 fi
+
+# Balls on nodes in a face, on an edge and a corner press dents; what springs hold follows from where things are, so no
+# energy comes of them. What is off comes and goes with the elements' strain.
+run 1 dents dents
+"$bin/tremie-info" dents --csv dents.csv > said 2>&1 || why+=" tremie-info ends with status $?;"
+awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+    NR == 2 { all = $at["kinetic_translation_J"] }
+    { off = $at["balance_J"]; worst = off * off > worst * worst ? off : worst; last = off
+      most = $at["elastic_J"] > most ? $at["elastic_J"] : most }
+    END { if (!(most > 0.4 * all && worst * worst < (1e-3 * all) ^ 2 && last * last < (3e-4 * all) ^ 2)) print worst, last, most }
+' dents.csv > off
+[ ! -s off ] || why+=" of the energy $(cat off) J are found at most, at the end, in springs;"
+result "no energy out of nodes, edges and corners"

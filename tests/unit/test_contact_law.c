@@ -100,6 +100,7 @@ static struct contact_law_meeting meeting_of(const struct impact *impact,
     const double partners = impact->wall ? 1.0 : 2.0;
     struct contact_law_meeting meeting = {.overlap = overlap > 0.0 ? overlap : 0.0,
                                           .inverse_radius = partners / r,
+                                          .width = 1.0,
                                           .inverse_mass = partners * inverse_mass};
     *arm = r - 0.5 * meeting.overlap;
     *normal = vec3_scale(1.0 / distance, d);

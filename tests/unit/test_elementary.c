@@ -49,6 +49,24 @@ TEST(sin_and_cos_at_special_values)
     EXPECT(isnan(elementary_cos((double)NAN)));
 }
 
+TEST(atan2_is_good_to_two_units)
+{
+    double worst = 0.0;
+    for (int i = -100000; i <= 100000; i++) {
+        const double y = (double)i * 1.3e-5, far = ldexp(y, i % 500);
+        for (int side = -1; side <= 1; side += 2) {
+            const double x = (double)side * (0.01 + (double)(i % 11) * 0.1);
+            worst = larger(worst, ulps(elementary_atan2(y, x), atan2l(y, x)));
+            worst = larger(worst, ulps(elementary_atan2(far, x), atan2l(far, x)));
+        }
+    }
+    EXPECT(worst < 2.0);
+    EXPECT(elementary_atan2(0.0, 0.0) == 0.0);
+    EXPECT(elementary_atan2(0.0, 2.0) == 0.0);
+    EXPECT(elementary_atan2(0.0, -2.0) == acos(-1.0));
+    EXPECT(isnan(elementary_atan2((double)NAN, 1.0)));
+}
+
 TEST(log_is_good_to_two_units)
 {
     double worst = 0.0;

@@ -962,30 +962,22 @@ TEST(an_elastic_impact_on_a_plane_is_hertz)
 /* ---- Surfaces that deform
  * --------------------------------------------------------------------- */
 
-/* Makes a body's corners move and yield one by one. */
 static struct body_skin *make_skin(struct body *body)
 {
-    const size_t n = (size_t)body->mesh.n_corners;
-    struct body_skin *skin = array_allocate(1, sizeof *skin);
-    skin->velocity = array_allocate(n, sizeof *skin->velocity);
-    skin->inverse_mass = array_allocate(n, sizeof *skin->inverse_mass);
-    skin->force = array_allocate(n, sizeof *skin->force);
-    body->skin = skin;
+    body->skin = body_skin_build(&body->mesh);
     body->moves = true;
-    return skin;
+    return body->skin;
 }
 
 static void free_skin(struct body *body)
 {
-    free(body->skin->velocity);
-    free(body->skin->inverse_mass);
-    free(body->skin->force);
-    free(body->skin);
+    body_skin_free(body->skin);
     body->skin = NULL;
 }
 
 /* The corners of a warped square together feel the opposite of the sphere's force, to the last
- * bit, and its moment. */
+ * bit, and its moment, but for friction's lever: it acts on the surface, which is not all where
+ * the sphere's own half-space would be. */
 TEST(a_skin_takes_what_the_sphere_gives)
 {
     struct vec3 vertices[] = {{-3, -3, 0}, {3, -3, 0.2}, {3, 3, 0}, {-3, 3, 0.3}};
@@ -1025,7 +1017,7 @@ TEST(a_skin_takes_what_the_sphere_gives)
             EXPECT(exact_sum_value(&total[x]) == -force[x]);
         const double torque[3] = {moment.x, moment.y, moment.z};
         for (int x = 0; x < 3; x++) {
-            EXPECT_NEAR(torque[x], exact_sum_value(&load->torque[x]), 1e-9 * force[2]);
+            EXPECT_NEAR(torque[x], exact_sum_value(&load->torque[x]), 1e-4 * force[2]);
             scene.facets.loads[0].torque[x] = (struct exact_sum){{0}, 0, 0};
         }
     }
@@ -1126,7 +1118,7 @@ TEST(a_sphere_rolls_in_a_curved_drum_without_a_ripple_and_in_facets_with_that_of
     EXPECT(slip < 1e-9 * hertz); /* nothing drags at it: friction could hold half of hertz */
     for (int n = 64; n <= 1024; n *= 4) {
         roll_around(n, &least, &most, &slip);
-        /* From the circle of corners to the middle of a facet (THEORY.md 2.4). */
+        /* From the circle of corners to the middle of a facet (THEORY.md 2.8). */
         const double sagitta = DRUM * (1.0 - cos(PI / (double)n));
         const double deepest = (DEPTH + sagitta) / DEPTH;
         EXPECT_NEAR(most, hertz * deepest * sqrt(deepest), 0.02 * (most - hertz));

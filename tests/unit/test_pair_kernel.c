@@ -22,6 +22,7 @@ static struct contact_law_meeting meeting_of(const double *a, const double *b,
         .normal = {d[0] * inverse, d[1] * inverse, d[2] * inverse},
         .overlap = overlap > 0.0 ? overlap : 0.0,
         .inverse_radius = spin_b[3] + spin_a[3],
+        .width = 1.0,
         .inverse_mass = spin_b[7] + spin_a[7],
     };
     const double *n = meeting.normal, half = 0.5 * meeting.overlap;

@@ -193,6 +193,7 @@ static void reference_pair(struct reference *r, int i, int j)
                      b[6] - a[6] - (arm[0] * n[1] - arm[1] * n[0])},
         .overlap = overlap,
         .inverse_radius = 1.0 / a[3] + 1.0 / b[3],
+        .width = 1.0,
         .inverse_mass = p[7] + q[7],
         .spin = {q[4] - p[4], q[5] - p[5], q[6] - p[6]},
     };

@@ -1,19 +1,19 @@
 /*
- * A force on a facet is shared out to the facet's nodes.  Whatever the facet and wherever on it
- * the force acts, the shares have its resultant and its moment, (2.3).
+ * What a sphere does to facets that deform is shared out to their nodes.  Whatever the facet
+ * and wherever the sphere presses on it, the shares of the spring's pressure have its resultant
+ * and its moment, and those of friction and damping act where they should, (2.4).
  *
- * Four thousand facets anywhere in space, down to an angle of about a degree, with ten forces
- * on each face, edge and vertex.  No scene is needed: the shares are asked for as elements
- * will.
+ * Four thousand facets anywhere in space, down to an angle of about a degree, with ten spheres
+ * on each.
  */
 #include <math.h>
 #include <stdio.h>
 
-#include "model/mesh.h"
-#include "physics/contact_geometry.h"
+#include "contact/facet_patch.h"
+#include "physics/contact_patch.h"
 #include "verify.h"
 
-enum { FACETS = 1300, FORCES = 10, KINDS = 3 };
+enum { FACETS = 1300, SPHERES = 10, FACES = 4 };
 
 static uint64_t seed = 5;
 
@@ -36,80 +36,95 @@ static void build_facet(struct mesh *mesh, int corners, double warp)
         vertices[k] = vec3_axpy(vertices[k], 0.2 * warp * verify_random(&seed), normal);
     }
     const int quad[1][4] = {{0, 1, 2, 3}}, triangle[1][4] = {{0, 1, 2, -1}};
-    mesh_build(mesh, 4, vertices, 1, corners == 3 ? triangle : quad);
-}
-
-/* Any weighted mean of a feature's vertices. */
-static struct vec3 random_point(const struct mesh *mesh, int feature)
-{
-    const int edge = feature - mesh->n_faces, vertex = edge - mesh->n_edges;
-    if (vertex >= 0)
-        return mesh->place[vertex];
-    const int n = edge >= 0 ? 2 : mesh->faces[feature].n;
-    const int *vertices =
-        edge >= 0 ? mesh->edges[edge].vertices : mesh->faces[feature].vertices;
-    struct vec3 sum = {0.0, 0.0, 0.0};
-    double total = 0.0;
-    for (int k = 0; k < n; k++) {
-        const double part = 0.5 + 0.5 * verify_random(&seed);
-        sum = vec3_axpy(sum, part, mesh->place[vertices[k]]);
-        total += part;
-    }
-    return vec3_scale(1.0 / total, sum);
+    mesh_build_skin(mesh, corners, vertices, 1, corners == 3 ? triangle : quad);
 }
 
 struct off {
     double resultant; /* over the force */
     double moment;    /* about the origin, over the force times the farthest node's distance */
+    double place;     /* of friction's resultant, over that distance */
 };
 
-static void split(const struct mesh *mesh, int feature, struct off *off)
+/* The same from the covered areas, face by face. */
+static void sum_faces(const struct mesh *mesh, struct vec3 centre, double radius,
+                      struct vec3 *force, struct vec3 *moment, struct vec3 *middle)
 {
-    const struct vec3 point = random_point(mesh, feature), force = random_vector();
-    const struct contact_geometry_shares shares = contact_geometry_shares(mesh, feature, point);
-    struct vec3 resultant = {0.0, 0.0, 0.0}, moment = {0.0, 0.0, 0.0};
+    double area = 0.0;
+    *force = *moment = *middle = (struct vec3){0.0, 0.0, 0.0};
+    for (int f = 0; f < mesh->n_faces; f++) {
+        struct contact_patch at;
+        if (!contact_patch_cut(mesh, f, centre, radius, &at))
+            continue;
+        const struct vec3 push = vec3_scale(at.area, mesh->face_normal[f]);
+        *force = vec3_add(*force, push);
+        *moment = vec3_add(*moment, vec3_cross(at.middle, push));
+        *middle = vec3_axpy(*middle, at.area, at.middle);
+        area += at.area;
+    }
+    *middle = vec3_scale(1.0 / area, *middle);
+}
+
+static void press(const struct body *body, struct facet_patch *patch, struct off *off)
+{
+    static const int near[FACES] = {0, 1, 2, 3};
+    const struct mesh *mesh = &body->mesh;
+    struct facet_contact group[FACES] = {{.feature = 0}};
+    for (int f = 0; f < mesh->n_faces; f++)
+        group[f].feature = f;
+    const double radius = 0.05 + fabs(verify_random(&seed)), over = verify_random(&seed);
+    struct vec3 centre =
+        vec3_axpy(mesh->place[0], 0.5 * (1.0 + over), vec3_sub(mesh->place[2], mesh->place[0]));
+    centre = vec3_axpy(centre, 0.9 * radius, mesh->face_normal[0]);
+    facet_patch_search(patch, group, near, mesh->n_faces, body, centre, radius);
+    if (patch->n_parts != 1)
+        return;
+    struct vec3 force, moment, middle;
+    sum_faces(mesh, centre, radius, &force, &moment, &middle);
+    const double size = vec3_norm(force);
     double farthest = 0.0;
-    for (int j = 0; j < shares.n; j++) {
-        const struct vec3 place = mesh->place[shares.vertices[j]],
-                          share = vec3_scale(shares.parts[j], force);
-        resultant = vec3_add(resultant, share);
-        moment = vec3_add(moment, vec3_cross(place, share));
+    for (int k = 0; k < patch->n_corners; k++) {
+        const struct facet_patch_corner *corner = &patch->corners[k];
+        const struct vec3 place = mesh->place[corner->corner];
+        force = vec3_sub(force, corner->pushed);
+        moment = vec3_sub(moment, vec3_cross(place, corner->pushed));
+        middle = vec3_axpy(middle, -corner->weight, place);
         farthest = fmax(farthest, vec3_norm(place));
     }
-    const double size = vec3_norm(force);
-    off->resultant = fmax(off->resultant, vec3_norm(vec3_sub(resultant, force)) / size);
-    off->moment = fmax(off->moment, vec3_norm(vec3_sub(moment, vec3_cross(point, force))) /
-                                        (size * farthest));
+    off->resultant = fmax(off->resultant, vec3_norm(force) / size);
+    off->moment = fmax(off->moment, vec3_norm(moment) / (size * farthest));
+    off->place = fmax(off->place, vec3_norm(middle) / farthest);
 }
 
 static void compare(const char *name, int corners, double warp)
 {
-    static const char *const kinds[KINDS] = {"face", "edges", "vertices"};
-    struct off off[KINDS] = {{0.0, 0.0}};
+    static const char *const kinds[] = {"resultant of the pressure's shares, off by",
+                                        "moment of the pressure's shares, off by",
+                                        "place of friction's shares, off by"};
+    static const char *const units[] = {"of the force", "of force and lever", "of the lever"};
+    struct off off = {0};
+    struct facet_patch patch = {0};
     for (int k = 0; k < FACETS; k++) {
-        struct mesh mesh;
-        build_facet(&mesh, corners, warp);
-        for (int feature = 0; feature < mesh_n_features(&mesh); feature++) {
-            const int edge = feature - mesh.n_faces, vertex = edge - mesh.n_edges;
-            for (int f = 0; f < FORCES; f++)
-                split(&mesh, feature, &off[vertex >= 0 ? 2 : edge >= 0 ? 1 : 0]);
-        }
-        mesh_clear(&mesh);
+        struct body body = {0};
+        build_facet(&body.mesh, corners, warp);
+        body.skin = body_skin_build(&body.mesh);
+        for (int f = 0; f < SPHERES; f++)
+            press(&body, &patch, &off);
+        body_skin_free(body.skin);
+        mesh_clear(&body.mesh);
     }
-    for (int k = 0; k < KINDS; k++) {
+    facet_patch_clear(&patch);
+    const double got[] = {off.resultant, off.moment, off.place};
+    for (int k = 0; k < 3; k++) {
         char row[128];
-        snprintf(row, sizeof row, "%s, %s: resultant of the shares, off by", name, kinds[k]);
-        verify_row(row, "of the force", 0.0, off[k].resultant, 1e-14, VERIFY_AT_MOST,
-                   "asked for; some roundings of 1.1e-16");
-        snprintf(row, sizeof row, "%s, %s: moment of the shares, off by", name, kinds[k]);
-        verify_row(row, "of force and lever", 0.0, off[k].moment, 1e-14, VERIFY_AT_MOST,
+        snprintf(row, sizeof row, "%s: %s", name, kinds[k]);
+        verify_row(row, units[k], 0.0, got[k], 1e-13, VERIFY_AT_MOST,
                    "asked for; some roundings of 1.1e-16");
     }
 }
 
 int main(int argc, char **argv)
 {
-    verify_begin(argc, argv, "Forces on facets, shared out to nodes", "statics, (2.3)");
+    verify_begin(argc, argv, "Pressure on facets, shared out to nodes", "statics, (2.4)");
     compare("triangles", 3, 0.0);
     compare("flat quads", 4, 0.0);
     compare("warped quads", 4, 1.0);

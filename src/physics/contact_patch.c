@@ -1,0 +1,159 @@
+/*
+ * Areas and volumes: see contact_patch.h.
+ *
+ * Around the foot of the centre on the face's plane the covered area is made of triangles from
+ * the foot to a piece of a side within the circle, and of sectors of the circle before the rest
+ * of it.  Both count with the sign of their turn, so it does not matter where the foot is.
+ */
+#include "physics/contact_patch.h"
+
+#include "base/elementary.h"
+
+static const double PI = 3.14159265358979323846;
+
+/* The circle in which the ball meets the plane, and what has been found in it so far. */
+struct circle {
+    struct vec3 normal;
+    double radius, height; /* of the ball, of its centre over the plane [m] */
+    double around;         /* radius of the circle [m] */
+    double angle, area,
+        solid;          /* of the sectors; of the triangles, there twice; as seen from the
+                                  centre, there half [rad], [m2], [sr] */
+    struct vec3 turned; /* sum over sectors of their ends' directions, last less first */
+    struct vec3 moment; /* of the triangles, six times [m3] */
+};
+
+static void add_sector(struct circle *circle, struct vec3 from, struct vec3 to)
+{
+    const double turn = vec3_dot(circle->normal, vec3_cross(from, to));
+    circle->angle += elementary_atan2(turn, vec3_dot(from, to));
+    circle->turned = vec3_axpy(circle->turned, 1.0 / vec3_norm(to), to);
+    circle->turned = vec3_axpy(circle->turned, -1.0 / vec3_norm(from), from);
+}
+
+static void add_triangle(struct circle *circle, struct vec3 from, struct vec3 to)
+{
+    const double twice = vec3_dot(circle->normal, vec3_cross(from, to));
+    const double h = circle->height;
+    const double a = sqrt(vec3_dot(from, from) + h * h), b = sqrt(vec3_dot(to, to) + h * h);
+    circle->area += twice;
+    circle->moment = vec3_axpy(circle->moment, twice, vec3_add(from, to));
+    circle->solid += elementary_atan2(twice, a * b + h * (a + b) + vec3_dot(from, to) + h * h);
+}
+
+/* What lies between the foot and a side of the face, from a vertex to the next; both as seen
+ * from the foot. */
+static void add_side(struct circle *circle, struct vec3 from, struct vec3 to)
+{
+    const struct vec3 along = vec3_sub(to, from);
+    const double length2 = vec3_dot(along, along), half = vec3_dot(from, along);
+    const double outside = vec3_dot(from, from) - circle->around * circle->around;
+    const double root2 = half * half - length2 * outside;
+    if (!(root2 > 0.0)) {
+        add_sector(circle, from, to);
+        return;
+    }
+    const double root = sqrt(root2);
+    const double enters = (-half - root) / length2, leaves = (-half + root) / length2;
+    const double first = enters > 0.0 ? enters : 0.0, last = leaves < 1.0 ? leaves : 1.0;
+    if (!(first < last)) {
+        add_sector(circle, from, to);
+        return;
+    }
+    const struct vec3 begin = vec3_axpy(from, first, along), end = vec3_axpy(from, last, along);
+    if (enters > 0.0)
+        add_sector(circle, from, begin);
+    add_triangle(circle, begin, end);
+    if (leaves < 1.0)
+        add_sector(circle, end, to);
+}
+
+/* A ball's volume behind the plane, in a unit of angle around the foot [m3]. */
+static double sector_volume(const struct circle *circle)
+{
+    const double depth = circle->radius - circle->height;
+    return depth * depth * (2.0 * circle->radius + circle->height) / 6.0;
+}
+
+static bool finish(const struct circle *circle, struct vec3 foot, struct contact_patch *patch)
+{
+    const double square = circle->around * circle->around, cube = square * circle->around;
+    const double ball = circle->radius * circle->radius * circle->radius;
+    patch->area = 0.5 * (circle->angle * square + circle->area);
+    patch->volume = circle->angle * sector_volume(circle) +
+                    (2.0 * ball * circle->solid - 0.5 * circle->height * circle->area) / 3.0;
+    if (!(patch->area > 0.0))
+        return false;
+    const struct vec3 sectors = vec3_cross(circle->turned, circle->normal);
+    const struct vec3 moment =
+        vec3_axpy(vec3_scale(1.0 / 6.0, circle->moment), cube / 3.0, sectors);
+    patch->middle = vec3_axpy(foot, 1.0 / patch->area, moment);
+    return true;
+}
+
+static double inside(const struct mesh_border *border, struct vec3 point)
+{
+    return vec3_dot(vec3_sub(point, border->from), border->inward);
+}
+
+/* Shares the area out to the vertices by its middle: shape functions are linear. */
+static void weigh(const struct mesh *mesh, int face, struct contact_patch *patch)
+{
+    const struct mesh_border *border = mesh->face_borders[face];
+    double left = patch->area;
+    for (int k = 0; k < 2; k++) { /* side k faces vertex k + 2 */
+        const double whole = inside(&border[k], border[(k + 2) % 3].from);
+        patch->weights[(k + 2) % 3] = patch->area * inside(&border[k], patch->middle) / whole;
+        left -= patch->weights[(k + 2) % 3];
+    }
+    patch->weights[1] = left;
+}
+
+bool contact_patch_cut(const struct mesh *mesh, int face, struct vec3 centre, double radius,
+                       struct contact_patch *patch)
+{
+    const struct mesh_border *border = mesh->face_borders[face];
+    const struct vec3 normal = mesh->face_normal[face];
+    const double height = vec3_dot(vec3_sub(centre, border[0].from), normal);
+    if (!(height > -radius && height < radius))
+        return false;
+    struct circle circle = {
+        .normal = normal, .radius = radius, .height = height < 0.0 ? -height : height};
+    const double square = (radius - circle.height) * (radius + circle.height);
+    bool is_whole = true;
+    for (int k = 0; k < 3; k++) {
+        const double within = inside(&border[k], centre);
+        const bool is_cut = within * within < square * border[k].length_squared;
+        if (!is_cut && within < 0.0)
+            return false;
+        is_whole = is_whole && !is_cut;
+    }
+    circle.around = sqrt(square);
+    const struct vec3 foot = vec3_axpy(centre, -height, normal);
+    if (is_whole) {
+        circle.angle = 2.0 * PI;
+    } else {
+        struct vec3 corners[3];
+        for (int k = 0; k < 3; k++)
+            corners[k] = vec3_sub(border[k].from, foot);
+        for (int k = 0; k < 3; k++)
+            add_side(&circle, corners[k], corners[(k + 1) % 3]);
+    }
+    if (!finish(&circle, foot, patch))
+        return false;
+    patch->volume = height < 0.0 ? -patch->volume : patch->volume;
+    weigh(mesh, face, patch);
+    return true;
+}
+
+double contact_patch_depth(double volume, double radius)
+{
+    enum { STEPS = 5 }; /* from a first guess that is good to 2 % */
+    const double part = volume / (PI * radius * radius * radius), root = sqrt(part);
+    double x = root + part * (1.0 / 6.0); /* depth over radius: x^2 (1 - x/3) = part */
+    for (int k = 0; k < STEPS; k++) {
+        x = x < 1.0 ? x : 1.0;
+        x -= (x * x * (1.0 - x / 3.0) - part) / (x * (2.0 - x));
+    }
+    return radius * (x < 1.0 ? x : 1.0);
+}
