@@ -197,6 +197,7 @@ void solid_destroy(struct solid *solid)
     free(solid->materials);
     free(solid->lists);
     free(solid->listed);
+    free(solid->here);
     free(solid->slot);
     free(solid->force);
     *solid = (struct solid){0};
@@ -301,6 +302,23 @@ static int n_parts(const struct solid *solid)
     return (solid->n_elements + SOLID_PART - 1) / SOLID_PART;
 }
 
+static void list_nodes(struct solid *solid)
+{
+    bool *is_here = array_allocate((size_t)solid->n_nodes, sizeof *is_here);
+    memcpy(is_here, solid->moves, (size_t)solid->n_nodes * sizeof *is_here);
+    for (int e = 0; e < solid->n_elements; e++)
+        for (int c = 0; solid->slot[e] >= 0 && c < solid_element_corners(solid->shape[e]); c++)
+            is_here[solid->corners[e][c]] = true;
+    solid->n_here = 0;
+    for (int i = 0; i < solid->n_nodes; i++) {
+        if (!is_here[i])
+            continue;
+        ARRAY_GROW(solid->here, solid->n_here + 1, solid->here_capacity);
+        solid->here[solid->n_here++] = i;
+    }
+    free(is_here);
+}
+
 void solid_assign(struct solid *solid, const bool *moves)
 {
     int slots_most = 0;
@@ -316,6 +334,7 @@ void solid_assign(struct solid *solid, const bool *moves)
                 list_part(solid, part, (enum solid_element_shape)shape, material, &n_slots);
         slots_most = n_slots > slots_most ? n_slots : slots_most;
     }
+    list_nodes(solid);
     if (slots_most > solid->force_capacity) {
         free(solid->force);
         solid->force = array_allocate_rows((size_t)slots_most, sizeof *solid->force);
@@ -382,8 +401,10 @@ static int compute_part(struct solid *solid, int k, int64_t step, double dt, boo
 bool solid_forces(struct solid *solid, int64_t step, double dt)
 {
     bool failed = false;
-    memset(solid->internal, 0, (size_t)solid->n_nodes * sizeof *solid->internal);
-    memset(solid->external, 0, (size_t)solid->n_nodes * sizeof *solid->external);
+    for (int k = 0; k < solid->n_here; k++) {
+        memset(solid->internal[solid->here[k]], 0, sizeof *solid->internal);
+        memset(solid->external[solid->here[k]], 0, sizeof *solid->external);
+    }
     for (int k = 0; k < solid->n_lists;)
         k = compute_part(solid, k, step, dt, &failed);
     solid_loads_apply(solid, (double)step * dt, solid->external);
@@ -481,7 +502,8 @@ void solid_move(struct solid *solid, int64_t step, double dt)
 {
     const struct pace pace = pace_of(solid, dt);
     solid_supports_set(&solid->supports, step + 1, dt);
-    for (int i = 0; i < solid->n_nodes; i++) {
+    for (int k = 0; k < solid->n_here; k++) {
+        const int i = solid->here[k];
         if (!solid->moves[i])
             continue;
         const struct solid_advance advance = advance_at(solid, i, &pace);

@@ -111,7 +111,9 @@ struct solid {
     int n_lists, lists_capacity; /* in ascending order of parts */
     struct solid_list *lists;
     int n_listed, listed_capacity;
-    int *listed;                       /* elements, list after list */
+    int *listed; /* elements, list after list */
+    int n_here, here_capacity;
+    int *here;                         /* nodes of these, ascending, and others moved here */
     int *slot;                         /* of each element in `force`; -1: not computed here */
     struct solid_element_force *force; /* of one part */
     int force_capacity;
