@@ -2,8 +2,9 @@
  * When to repartition (the paper's low level), and with which weights.
  *
  * Ranks measure the time that they spend on contact laws of their own spheres and on elements
- * for their own nodes; waiting does not count.  At a search the largest is compared with the mean; above the job's
- * limit the boxes are cut anew.  Clocks decide here, and may: nothing of it changes a result.
+ * of their own nodes; waiting does not count.  At a search the largest is compared with the
+ * mean; above the job's limit the boxes are cut anew.  Clocks decide here, and may: nothing of
+ * it changes a result.
  */
 #ifndef TREMIE_DOMAIN_BALANCE_H
 #define TREMIE_DOMAIN_BALANCE_H

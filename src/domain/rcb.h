@@ -21,7 +21,8 @@ struct rcb_point {
     int64_t weight;
 };
 
-/* Fills `boxes` (initialised for all ranks) from the n points that this rank has.  Collective. */
+/* Fills `boxes` (initialised for all ranks) from the n points that this rank has.
+ * Collective. */
 void rcb_partition(struct boxes *boxes, const struct comm *comm, int n,
                    const struct rcb_point *points);
 

@@ -246,16 +246,19 @@ void deform_move(struct simulation *sim)
 /* ---- What others ask
  * -------------------------------------------------------------------------- */
 
-void deform_count(const struct deform *deform, int64_t *n_nodes, int64_t *n_elements)
+struct deform_sizes deform_sizes(const struct deform *deform)
 {
-    *n_nodes = *n_elements = 0;
+    struct deform_sizes sizes = {0};
     for (int b = 0; b < deform->n; b++) {
-        const struct solid *solid = &deform->list[b].solid;
-        for (int k = 0; k < solid->n_here; k++)
-            *n_nodes += solid->moves[solid->here[k]];
-        for (int e = 0; e < solid->n_elements; e++)
-            *n_elements += solid->slot[e] >= 0;
+        const struct deform_body *body = &deform->list[b];
+        for (int i = 0; i < body->solid.n_nodes; i++) {
+            sizes.n_nodes += body->solid.moves[i];
+            sizes.n_copies += !body->solid.moves[i] && deform_share_has(body, i);
+        }
+        for (int e = 0; e < body->solid.n_elements; e++)
+            sizes.n_elements += body->solid.slot[e] >= 0;
     }
+    return sizes;
 }
 
 /* Has a body too much energy in hourglass modes?  The rank with the worst element names it. */

@@ -51,8 +51,13 @@ void deform_plan(struct simulation *sim);
 /* Moves all nodes, and finds how much of the allowances that uses here.  Collective. */
 void deform_move(struct simulation *sim);
 
-/* How many nodes this rank moves, and how many elements it computes.  Local. */
-void deform_count(const struct deform *deform, int64_t *n_nodes, int64_t *n_elements);
+/* What this rank has of all solids. */
+struct deform_sizes {
+    int64_t n_nodes;    /* moved here */
+    int64_t n_copies;   /* of nodes that others move */
+    int64_t n_elements; /* computed here */
+};
+struct deform_sizes deform_sizes(const struct deform *deform);
 /* Totals over all solids and ranks, between deform_plan() and deform_move(); notes whether some
  * solid has too much in hourglass modes.  Collective. */
 void deform_energies(struct simulation *sim, struct solid_energies *energies);

@@ -10,7 +10,8 @@
 #include "run/deform_state.h"
 #include "run/simulation.h"
 
-enum { FOR_ELEMENT = 1, TOUCHED = 2, BESIDE = 4 };
+/* Why a rank has a copy of a node. */
+enum { FOR_ELEMENT = 1, TOUCHED = 2 };
 
 void deform_share_init(struct deform_share *share, const struct comm *comm, struct solid *solid)
 {
@@ -21,10 +22,11 @@ void deform_share_init(struct deform_share *share, const struct comm *comm, stru
     bool *moves = array_allocate(n, sizeof *moves);
     for (int i = 0; i < solid->n_nodes; i++) {
         share->owner[i] = (int)((int64_t)i * comm->n_ranks / solid->n_nodes);
-        share->copy[i] = FOR_ELEMENT;
         moves[i] = share->owner[i] == comm->rank;
     }
     solid_assign(solid, moves);
+    for (int k = 0; k < solid->n_here; k++)
+        share->copy[solid->here[k]] = FOR_ELEMENT;
     free(moves);
 }
 
@@ -53,8 +55,8 @@ static void append(int **list, int *n, int *capacity, int value)
     (*list)[(*n)++] = value;
 }
 
-/* What goes to a rank at a renewal: a face that its spheres may touch, or the state of a node or
- * an element, whose record follows. */
+/* What goes to a rank at a renewal: a face that its spheres may touch, or the state of a node
+ * or an element, whose record follows. */
 enum { FACE = DEFORM_STATE_N_KINDS };
 
 struct item {
@@ -281,6 +283,7 @@ static void exchange_owners(struct simulation *sim)
             memcpy(*mine, deform->share.owner, n_nodes * sizeof **mine);
         }
         (*mine)[changes[k].node] = changes[k].owner;
+        sim->deform.list[changes[k].body].share.n_left++;
     }
     hand_over(sim, changes, n, next);
     comm_mail_exchange(&sim->deform.mail, sim->comm);
@@ -295,38 +298,16 @@ static void exchange_owners(struct simulation *sim)
 /* ---- Who needs copies
  * ------------------------------------------------------------------------- */
 
-static void mark_face(struct deform_body *deform, const struct mesh *mesh, int f,
-                      unsigned char why)
+/* The corners of a face that spheres may touch. */
+static void mark_face(struct deform_body *deform, const struct mesh *mesh, int f)
 {
     for (int k = 0; k < mesh->faces[f].n; k++) {
         const int v = mesh->faces[f].vertices[k];
         const bool is_mean = v >= mesh->n_corners;
+        const int *corners = is_mean ? mesh->mean_of[v - mesh->n_corners] : &v;
         for (int c = 0; c < (is_mean ? 4 : 1); c++)
-            deform->share
-                .copy[deform->skin
-                          .nodes[is_mean ? mesh->mean_of[v - mesh->n_corners][c] : v]] |= why;
+            deform->share.copy[deform->skin.nodes[corners[c]]] |= TOUCHED;
     }
-}
-
-/* Faces that spheres may touch, and all that share a vertex with one of these. */
-static void mark_faces(struct deform_body *deform, const struct mesh *mesh)
-{
-    const struct deform_share *share = &deform->share;
-    bool *around = array_allocate((size_t)mesh->n_vertices, sizeof *around);
-    for (int t = 0; t < share->n_touched; t++) {
-        const struct mesh_face *face = &mesh->faces[share->touched[t]];
-        mark_face(deform, mesh, share->touched[t], TOUCHED);
-        for (int k = 0; k < face->n; k++)
-            around[face->vertices[k]] = true;
-    }
-    for (int v = 0; v < mesh->n_vertices; v++)
-        for (int k = mesh->edge_begin[v]; around[v] && k < mesh->edge_begin[v + 1]; k++)
-            for (int s = 0; s < 2; s++) {
-                const int f = mesh->edges[mesh->edge_list[k]].faces[s];
-                if (f >= 0)
-                    mark_face(deform, mesh, f, BESIDE);
-            }
-    free(around);
 }
 
 struct request {
@@ -345,7 +326,8 @@ static void request_copies(struct simulation *sim, int b)
     memset(share->copy, 0, (size_t)solid->n_nodes);
     for (int k = 0; k < solid->n_here; k++)
         share->copy[solid->here[k]] = FOR_ELEMENT;
-    mark_faces(deform, mesh);
+    for (int t = 0; t < share->n_touched; t++)
+        mark_face(deform, mesh, share->touched[t]);
     for (int i = 0; i < solid->n_nodes; i++) {
         struct deform_share_peer *peer = &share->peers[share->owner[i]];
         if (share->copy[i] == 0 || solid->moves[i])
@@ -407,6 +389,22 @@ static void exchange_requests(struct simulation *sim)
     list_ranks(sim);
 }
 
+/* What others have by now takes no memory here, as far as that comes in whole pages. */
+static void forget(struct deform_body *deform, struct mesh *mesh)
+{
+    enum { SOME = 8 }; /* below that part of all nodes it does not pay */
+    const int n = deform->solid.n_nodes;
+    if (deform->share.n_left < n / SOME)
+        return;
+    deform->share.n_left = 0;
+    bool *keep = array_allocate((size_t)n, sizeof *keep);
+    for (int i = 0; i < n; i++)
+        keep[i] = deform_share_has(deform, i);
+    solid_forget(&deform->solid, keep);
+    deform_skin_forget(&deform->skin, mesh);
+    free(keep);
+}
+
 void deform_share_renew(struct simulation *sim)
 {
     struct deform *deform = &sim->deform;
@@ -426,8 +424,11 @@ void deform_share_renew(struct simulation *sim)
     exchange_owners(sim);
     exchange_requests(sim);
     deform_share_tell(sim);
-    for (int b = 0; b < deform->n; b++)
-        deform_skin_renew(&deform->list[b], &sim->bodies.list[deform->list[b].body]);
+    for (int b = 0; b < deform->n; b++) {
+        struct body *body = &sim->bodies.list[deform->list[b].body];
+        deform_skin_renew(&deform->list[b], body);
+        forget(&deform->list[b], &body->mesh);
+    }
 }
 
 /* ---- Each step

@@ -6,15 +6,16 @@
  * redistributions: state goes to those who have not had it, of a node from the rank that moved
  * it, of an element from that which counted it.
  *
- * A rank has copies of others' nodes where elements that it computes need them, where its
- * spheres may touch the facet before the next search, and where they may touch the facet
- * beside: whether an edge or a corner is touched depends on all faces around.  The one that
- * moves a facet's first corner finds out which ranks' spheres reach it, by the boxes of their
- * centres (domain/halo.h).  Each step a node's place and velocity go to the ranks with copies
- * of it, and what spheres do to copies goes, as exact sums, to the rank that moves the node.
+ * A rank has copies of others' nodes where elements that it computes need them, and where its
+ * spheres may touch the facet before the next search.  An edge or a corner that they may touch
+ * belongs to all facets around it, so these are there too.  The one that moves a facet's first
+ * corner finds out which ranks' spheres reach it, by the boxes of their centres
+ * (domain/halo.h).  Each step a node's place and velocity go to the ranks with copies of it,
+ * and what spheres do to copies goes, as exact sums, to the rank that moves the node.
  *
- * Every rank knows the mesh and who moves what in all of it: that is memory for 4 bytes a node,
- * and lists are made anew by going through all of the body at each search.
+ * Every rank knows the mesh and who moves what in all of it, which is some 140 bytes an element
+ * wherever that is; and it goes through lists of all of the body at each search.  State takes
+ * memory only where it is needed, as far as that leaves whole pages.
  */
 #ifndef TREMIE_RUN_DEFORM_SHARE_H
 #define TREMIE_RUN_DEFORM_SHARE_H
@@ -43,11 +44,12 @@ struct deform_share {
     unsigned char *copy; /* why there is a copy of each node here; 0: there is none */
     struct deform_share_peer *peers; /* one a rank */
     int64_t n_changes;               /* how often who moves what of this body has changed */
+    int64_t n_left;                  /* nodes that changed rank since memory was given back */
     int n_touched, touched_capacity;
     int *touched; /* faces that spheres here may touch before the next search */
 };
 
-/* At first ranks move as many nodes each, and have copies of all others. */
+/* At first ranks move as many nodes each, by their numbers. */
 void deform_share_init(struct deform_share *share, const struct comm *comm,
                        struct solid *solid);
 void deform_share_clear(struct deform_share *share, const struct comm *comm);

@@ -60,12 +60,23 @@ void deform_skin_place(const struct deform_body *deform, struct body *body)
     body->speed_max = sqrt(speed2_max);
 }
 
+/* A face without a normal is not found, wherever its borders may be. */
 static void place_nowhere(struct mesh *mesh)
 {
-    const double none = (double)NAN;
+    const struct vec3 none = {(double)NAN, (double)NAN, (double)NAN};
     for (int v = 0; v < mesh->n_vertices; v++)
-        mesh->place[v] = (struct vec3){none, none, none};
-    mesh_update(mesh);
+        mesh->place[v] = none;
+    for (int f = 0; f < mesh->n_faces; f++)
+        mesh->face_normal[f] = none;
+}
+
+void deform_skin_forget(const struct deform_skin *skin, struct mesh *mesh)
+{
+    bool *keep = array_allocate((size_t)mesh->n_faces, sizeof *keep);
+    for (int k = 0; k < skin->n_faces; k++)
+        keep[skin->faces[k]] = true;
+    array_forget(mesh->face_borders, (size_t)mesh->n_faces, sizeof *mesh->face_borders, keep);
+    free(keep);
 }
 
 static void list_vertices(const struct deform_body *deform, const struct mesh *mesh)
@@ -165,6 +176,7 @@ void deform_skin_hide(struct simulation *sim)
     for (int k = 0; sim->comm->n_ranks > 1 && k < sim->deform.n; k++) {
         struct body *body = &sim->bodies.list[sim->deform.list[k].body];
         place_nowhere(&body->mesh);
+        deform_skin_forget(&sim->deform.list[k].skin, &body->mesh);
         deform_skin_place(&sim->deform.list[k], body);
     }
 }

@@ -9,6 +9,7 @@
 
 struct body;
 struct deform_body;
+struct mesh;
 struct simulation;
 
 struct deform_skin {
@@ -28,6 +29,8 @@ void deform_skin_renew(struct deform_body *deform, struct body *body);
 /* Puts what is here where its nodes are, with their velocities, and takes all forces from it.
  * Local. */
 void deform_skin_place(const struct deform_body *deform, struct body *body);
+/* Gives back memory of what is not here. */
+void deform_skin_forget(const struct deform_skin *skin, struct mesh *mesh);
 /* Speed of the fastest vertex that is moved here [m/s].  Local. */
 double deform_skin_speed(const struct deform_body *deform);
 

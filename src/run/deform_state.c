@@ -119,6 +119,18 @@ int deform_state_tables(const struct simulation *sim, struct checkpoint_more *ta
     return DEFORM_STATE_N_KINDS;
 }
 
+/* Elements that were computed here if they were alive are here, too. */
+static bool is_here(const struct deform_body *deform, enum deform_state_kind kind, int i)
+{
+    if (kind == DEFORM_STATE_NODE)
+        return deform_share_has(deform, i);
+    const struct solid *solid = &deform->solid;
+    for (int c = 0; c < solid_element_corners(solid->shape[i]); c++)
+        if (solid->moves[solid->corners[i][c]])
+            return true;
+    return false;
+}
+
 void deform_state_restore(struct simulation *sim, const struct checkpoint_more *tables)
 {
     for (int k = 0; k < sim->deform.n; k++) {
@@ -128,9 +140,10 @@ void deform_state_restore(struct simulation *sim, const struct checkpoint_more *
             int64_t id;
             const int n = rows_of(&sim->deform.list[k], (enum deform_state_kind)kind, &id);
             for (int i = 0; i < n; i++, id++)
-                deform_state_unpack(solid, (enum deform_state_kind)kind, i,
-                                    table->records + (size_t)id * table->record_size +
-                                        sizeof id);
+                if (is_here(&sim->deform.list[k], (enum deform_state_kind)kind, i))
+                    deform_state_unpack(solid, (enum deform_state_kind)kind, i,
+                                        table->records + (size_t)id * table->record_size +
+                                            sizeof id);
         }
         bool *moves = array_allocate((size_t)solid->n_nodes, sizeof *moves);
         memcpy(moves, solid->moves, (size_t)solid->n_nodes * sizeof *moves);

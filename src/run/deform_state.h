@@ -25,7 +25,7 @@ void deform_state_unpack(struct solid *solid, enum deform_state_kind kind, int i
 
 /* Tables of nodes and elements for checkpoints: two, none without solids. */
 int deform_state_tables(const struct simulation *sim, struct checkpoint_more *tables);
-/* Takes them over as read, on all ranks. */
+/* Takes over what is here of them, as read. */
 void deform_state_restore(struct simulation *sim, const struct checkpoint_more *tables);
 
 #endif

@@ -113,10 +113,9 @@ void redistribute_inner(struct simulation *sim)
 /* The low level: boxes are cut anew where work has drifted apart, or at first. */
 static void repartition(struct simulation *sim)
 {
-    int64_t n_nodes, n_elements;
     int n = sim->spheres.n_owned;
-    deform_count(&sim->deform, &n_nodes, &n_elements);
-    struct rcb_point *points = array_allocate((size_t)(n + n_nodes), sizeof *points);
+    struct rcb_point *points =
+        array_allocate((size_t)(n + deform_sizes(&sim->deform).n_nodes), sizeof *points);
     balance_spheres(points, &sim->spheres, sim->job->decomposition.weights, &sim->contacts.now,
                     &sim->candidates, &sim->facets);
     for (int b = 0; b < sim->deform.n; b++)

@@ -45,8 +45,9 @@ static void add_columns(struct series *table)
                       "nodes_told");
     series_add_column(table, "1", "largest over mean working time at the last verdict",
                       "imbalance");
-    static const char *const sizes[] = {"owned",      "ghosts",   "internal", "interfacial",
-                                        "candidates", "contacts", "nodes",    "elements"};
+    static const char *const sizes[] = {"owned",       "ghosts",      "internal",
+                                        "interfacial", "candidates",  "contacts",
+                                        "nodes",       "node_copies", "elements"};
     for (int k = 0; k < (int)(sizeof sizes / sizeof *sizes); k++) {
         series_add_column(table, "1", "number a rank, least", "%s.min", sizes[k]);
         series_add_column(table, "1", "number a rank, mean", "%s.mean", sizes[k]);
@@ -158,7 +159,7 @@ void runtime_row(struct runtime *runtime, const struct comm *comm, int64_t step,
         row[n++] = counts[k];
     const int64_t numbers[] = {sizes->n_owned,       sizes->n_ghosts,     sizes->n_internal,
                                sizes->n_interfacial, sizes->n_candidates, sizes->n_contacts,
-                               sizes->n_nodes,       sizes->n_elements};
+                               sizes->n_nodes,       sizes->n_copies,     sizes->n_elements};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         spread(comm, row, &n, numbers[k], 1.0);
     spread(comm, row, &n, (int64_t)runtime_memory(), 1.0);

@@ -30,8 +30,9 @@ enum runtime_phase {
 /* Sizes on this rank when a row is made. */
 struct runtime_sizes {
     int64_t n_owned, n_ghosts, n_internal, n_interfacial, n_candidates, n_contacts;
-    int64_t n_spheres;           /* in the run */
-    int64_t n_nodes, n_elements; /* of bodies that deform: moved, computed */
+    int64_t n_spheres; /* in the run */
+    int64_t n_nodes, n_copies,
+        n_elements; /* of bodies that deform: moved, not moved, computed */
 };
 
 struct runtime {

@@ -375,7 +375,8 @@ static int write_series(struct simulation *sim, const struct run_folder *folder)
 
 struct runtime_sizes simulation_sizes(const struct simulation *sim)
 {
-    struct runtime_sizes sizes = {
+    const struct deform_sizes solids = deform_sizes(&sim->deform);
+    return (struct runtime_sizes){
         .n_owned = sim->spheres.n_owned,
         .n_ghosts = sim->spheres.n_all - sim->spheres.n_owned,
         .n_internal = sim->halo.n_internal,
@@ -383,9 +384,10 @@ struct runtime_sizes simulation_sizes(const struct simulation *sim)
         .n_candidates = sim->candidates.n,
         .n_contacts = sim->contacts.now.n,
         .n_spheres = sim->n_spheres,
+        .n_nodes = solids.n_nodes,
+        .n_copies = solids.n_copies,
+        .n_elements = solids.n_elements,
     };
-    deform_count(&sim->deform, &sizes.n_nodes, &sizes.n_elements);
-    return sizes;
 }
 
 /* Files hold places within the domain; memory may not, before the next search.  Returns what
