@@ -179,6 +179,21 @@ static void print_value(const struct stats *stats, const char *called,
         printf("\n");
 }
 
+/* Of bodies that deform. */
+static void print_solids(const struct stats *stats)
+{
+    print_value(stats, "  nodes moved",
+                (const char *const[3]){"nodes.min", "nodes.mean", "nodes.max"}, 1, "");
+    print_value(stats, "  copies of nodes",
+                (const char *const[3]){NULL, "node_copies.mean", "node_copies.max"}, 1, "");
+    print_value(stats, "  elements computed",
+                (const char *const[3]){"elements.min", "elements.mean", "elements.max"}, 1, "");
+    printf("%-28s %.0f\n", "nodes that changed rank",
+           records_sum(&stats->rows, "nodes_migrated"));
+    printf("%-28s %.4g kB\n", "told about nodes each step",
+           1e-3 * records_sum(&stats->rows, "nodes_told") / stats->steps);
+}
+
 static void print_counts(const struct stats *stats)
 {
     print_events(stats, "searches", "searches", "search");
@@ -203,6 +218,8 @@ static void print_counts(const struct stats *stats)
                 "");
     print_value(stats, "  pairs in the inner list",
                 (const char *const[3]){NULL, "contacts.mean", NULL}, 1, "");
+    if (records_max(&stats->rows, "nodes.max") > 0.0)
+        print_solids(stats);
     print_value(stats, "  memory", (const char *const[3]){NULL, "memory.mean", "memory.max"},
                 1048576.0, " MiB");
     print_value(stats, "imbalance of computing",

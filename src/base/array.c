@@ -10,7 +10,7 @@
 
 #include "base/report.h"
 
-enum { CACHE_LINE = 64, HUGE_PAGE = 2 * 1024 * 1024 };
+enum { CACHE_LINE = 64, PAGE = 4096, HUGE_PAGE = 2 * 1024 * 1024 };
 
 static size_t checked_bytes(size_t n, size_t size)
 {
@@ -40,6 +40,38 @@ void *array_allocate_rows(size_t n, size_t size)
         (void)madvise(memory, bytes / HUGE_PAGE * HUGE_PAGE, MADV_HUGEPAGE); /* it may fail */
     memset(memory, 0, bytes);
     return memory;
+}
+
+void *array_allocate_sparse(size_t n, size_t size)
+{
+    const size_t bytes = checked_bytes(n, size), whole = bytes / PAGE * PAGE;
+    char *memory = NULL;
+    if (posix_memalign((void **)&memory, PAGE, bytes > 0 ? bytes : PAGE) != 0)
+        report_no_memory(bytes);
+    /* Pages that are given back come again as zeros when they are needed. */
+    if (whole > 0 && (madvise(memory, whole, MADV_NOHUGEPAGE) != 0 ||
+                      madvise(memory, whole, MADV_DONTNEED) != 0))
+        memset(memory, 0, whole);
+    memset(memory + whole, 0, bytes - whole);
+    return memory;
+}
+
+/* Gives back the whole pages between two places, if there are any. */
+static void forget_between(char *begin, char *end)
+{
+    char *first = begin + (PAGE - (uintptr_t)begin % PAGE) % PAGE;
+    char *last = end - (uintptr_t)end % PAGE;
+    if (first < last)
+        (void)madvise(first, (size_t)(last - first), MADV_DONTNEED); /* else it stays */
+}
+
+void array_forget(void *rows, size_t n, size_t size, const bool *keep)
+{
+    for (size_t i = 0, end; i < n; i = end + 1) {
+        for (end = i; end < n && !keep[end]; end++)
+            continue;
+        forget_between((char *)rows + i * size, (char *)rows + end * size);
+    }
 }
 
 void *array_resize(void *old, size_t n_old, size_t n, size_t size)

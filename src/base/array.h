@@ -7,12 +7,19 @@
 #ifndef TREMIE_BASE_ARRAY_H
 #define TREMIE_BASE_ARRAY_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 /* n zeroed elements of `size` bytes each; free() releases them. */
 void *array_allocate(size_t n, size_t size);
 /* The same, aligned to 64 bytes (and to huge pages when large); free() releases them. */
 void *array_allocate_rows(size_t n, size_t size);
+/* The same, without huge pages: only what is written to takes memory, page by page, as long as
+ * the whole is large. */
+void *array_allocate_sparse(size_t n, size_t size);
+/* Gives back the memory of all elements of a large array but those to keep, as far as these
+ * leave whole pages; their contents are lost. */
+void array_forget(void *rows, size_t n, size_t size, const bool *keep);
 /* Room for n elements of `size` bytes, contents kept, new bytes zeroed. */
 void *array_resize(void *old, size_t n_old, size_t n, size_t size);
 /* Like array_resize for memory from array_allocate_rows. */

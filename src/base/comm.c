@@ -189,6 +189,33 @@ void comm_mail_exchange(struct comm_mail *mail, const struct comm *comm)
     free(requests);
 }
 
+void comm_mail_exchange_with(struct comm_mail *mail, const struct comm *comm, int n,
+                             const int *ranks)
+{
+    enum { TAG = 3 };
+    MPI_Request *requests = array_allocate((size_t)n, sizeof(MPI_Request));
+    for (int k = 0; k < n; k++) {
+        struct comm_box *out = &mail->out[ranks[k]];
+        CHECK(out->n <= INT_MAX, "a message of over 2 GiB");
+        COMM_CHECK(MPI_Isend(out->bytes, (int)out->n, MPI_BYTE, ranks[k], TAG, comm->mpi,
+                             &requests[k]));
+    }
+    for (int k = 0; k < n; k++) {
+        struct comm_box *in = &mail->in[ranks[k]];
+        MPI_Message message;
+        MPI_Status status;
+        int size = 0;
+        COMM_CHECK(MPI_Mprobe(ranks[k], TAG, comm->mpi, &message, &status));
+        COMM_CHECK(MPI_Get_count(&status, MPI_BYTE, &size));
+        ARRAY_GROW(in->bytes, (size_t)size, in->capacity);
+        COMM_CHECK(MPI_Mrecv(in->bytes, size, MPI_BYTE, &message, MPI_STATUS_IGNORE));
+        in->n = (size_t)size;
+        in->read = 0;
+    }
+    COMM_CHECK(MPI_Waitall(n, requests, MPI_STATUSES_IGNORE));
+    free(requests);
+}
+
 void comm_mail_unpack(struct comm_mail *mail, int from_rank, void *bytes, size_t n)
 {
     struct comm_box *box = &mail->in[from_rank];

@@ -70,6 +70,11 @@ void comm_mail_begin(struct comm_mail *mail);
 void comm_mail_pack(struct comm_mail *mail, int to_rank, const void *bytes, size_t n);
 /* Sends all; afterwards in[q] holds what rank q packed for this one.  Collective. */
 void comm_mail_exchange(struct comm_mail *mail, const struct comm *comm);
+/* The same between this rank and the n others named, each of which names this one: what is
+ * packed for these is sent, be it nothing, and what is packed for others is not.  Collective
+ * among these. */
+void comm_mail_exchange_with(struct comm_mail *mail, const struct comm *comm, int n,
+                             const int *ranks);
 /* Takes n bytes out of in[q]. */
 void comm_mail_unpack(struct comm_mail *mail, int from_rank, void *bytes, size_t n);
 /* Is there something left in in[q]? */

@@ -150,6 +150,30 @@ static bool is_needed(const double *x, double reach, const struct rank_boxes *th
     return false;
 }
 
+/* A little more than searches look for, so that rounding loses nothing. */
+static bool box_reaches(const struct level_box *box, const double shift[3], const double low[3],
+                        const double high[3])
+{
+    const double reach = box->reach * 1.00001;
+    for (int k = 0; k < 3; k++)
+        if (low[k] > box->high[k] + shift[k] + reach ||
+            high[k] < box->low[k] + shift[k] - reach)
+            return false;
+    return true;
+}
+
+bool halo_reaches(const struct halo *halo, int rank, const double low[3], const double high[3])
+{
+    const struct rank_boxes *all = halo->all_boxes;
+    for (int l = 0; l < LEVELS; l++) {
+        const struct level_box *box = &all[rank].level[l];
+        for (int s = 0; box->low[0] <= box->high[0] && s < halo->n_shifts; s++)
+            if (box_reaches(box, halo->shifts[s], low, high))
+                return true;
+    }
+    return false;
+}
+
 static void add_send(struct halo_peer *peer, int i, int shift)
 {
     ARRAY_GROW(peer->send, peer->n_send + 1, peer->send_capacity);

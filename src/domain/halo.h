@@ -19,6 +19,7 @@
 #ifndef TREMIE_DOMAIN_HALO_H
 #define TREMIE_DOMAIN_HALO_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/comm.h"
@@ -59,6 +60,10 @@ void halo_clear(struct halo *halo);
  * they are in memory.  half_buffer [m] is for the paper's classes.  Collective. */
 void halo_build(struct halo *halo, const struct comm *comm, const struct boxes *boxes,
                 struct spheres *spheres, const struct materials *materials, double half_buffer);
+
+/* May an owned sphere of that rank touch what lies within low .. high, itself or as an image,
+ * before the next search?  After halo_build() on several ranks.  Local. */
+bool halo_reaches(const struct halo *halo, int rank, const double low[3], const double high[3]);
 
 /* Gives every ghost its owner's present motion.  Collective among peers. */
 void halo_refresh(struct halo *halo, const struct comm *comm, struct spheres *spheres);

@@ -7,11 +7,10 @@
 #include "base/array.h"
 #include "base/comm.h"
 #include "domain/boxes.h"
-#include "model/sphere.h"
 
 enum { BINS = 256, ROUNDS = 3 };
 
-/* A set of ranks whose spheres are still to be divided. */
+/* A set of ranks whose points are still to be divided. */
 struct group {
     int first_rank, n_ranks;
     int *link; /* where its code goes in the tree */
@@ -23,20 +22,21 @@ struct group {
 struct work {
     int n_groups;
     struct group *groups;
-    int *group_of;      /* of each sphere; -1 when its rank is decided */
+    int n_points;
+    const struct rcb_point *points;
+    int *group_of;      /* of each point; -1 when its rank is decided */
     double *extent;     /* 6 a group: least, and minus the largest, coordinates */
     int64_t *histogram; /* BINS a group */
 };
 
-static void measure_extents(struct work *work, const struct comm *comm,
-                            const struct spheres *spheres)
+static void measure_extents(struct work *work, const struct comm *comm)
 {
     for (int k = 0; k < 6 * work->n_groups; k++)
         work->extent[k] = 1e300;
-    for (int i = 0; i < spheres->n_owned; i++) {
+    for (int i = 0; i < work->n_points; i++) {
         if (work->group_of[i] < 0)
             continue;
-        const double *x = sphere_position(spheres, i);
+        const double *x = work->points[i].place;
         double *extent = work->extent + 6 * work->group_of[i];
         for (int k = 0; k < 3; k++) {
             extent[k] = x[k] < extent[k] ? x[k] : extent[k];
@@ -60,21 +60,20 @@ static void measure_extents(struct work *work, const struct comm *comm,
 }
 
 /* Weight by bin between low and high of each group, summed over ranks. */
-static void fill_histograms(struct work *work, const struct comm *comm,
-                            const struct spheres *spheres, const int64_t *weights)
+static void fill_histograms(struct work *work, const struct comm *comm)
 {
     memset(work->histogram, 0, (size_t)work->n_groups * BINS * sizeof *work->histogram);
-    for (int i = 0; i < spheres->n_owned; i++) {
+    for (int i = 0; i < work->n_points; i++) {
         if (work->group_of[i] < 0)
             continue;
         const struct group *group = &work->groups[work->group_of[i]];
-        const double x = sphere_position(spheres, i)[group->axis];
+        const double x = work->points[i].place[group->axis];
         if (!(x >= group->low && x <= group->high))
             continue;
         const double span = group->high - group->low;
         int bin = span > 0.0 ? (int)((x - group->low) / span * BINS) : 0;
         bin = bin < BINS ? bin : BINS - 1;
-        work->histogram[work->group_of[i] * BINS + bin] += weights[i];
+        work->histogram[work->group_of[i] * BINS + bin] += work->points[i].weight;
     }
     comm_sum_int(comm, work->histogram, work->n_groups * BINS);
 }
@@ -104,7 +103,7 @@ static int code_of(int first_rank, int n_ranks, struct boxes *boxes)
 }
 
 /* Cuts every group and makes the next level's groups. */
-static void divide(struct work *work, struct boxes *boxes, const struct spheres *spheres)
+static void divide(struct work *work, struct boxes *boxes)
 {
     struct group *next = array_allocate((size_t)boxes->n_ranks, sizeof *next);
     int *lower_of = array_allocate((size_t)work->n_groups, sizeof *lower_of);
@@ -127,12 +126,11 @@ static void divide(struct work *work, struct boxes *boxes, const struct spheres 
             next[n_next++] = (struct group){
                 group->first_rank + n_lower, n_upper, &node->child[1], 0, 0.0, 0.0, 0, 0};
     }
-    for (int i = 0; i < spheres->n_owned; i++) {
+    for (int i = 0; i < work->n_points; i++) {
         const int g = work->group_of[i];
         if (g < 0)
             continue;
-        const bool lower =
-            sphere_position(spheres, i)[work->groups[g].axis] < work->groups[g].high;
+        const bool lower = work->points[i].place[work->groups[g].axis] < work->groups[g].high;
         work->group_of[i] = lower ? lower_of[g] : upper_of[g];
     }
     free(lower_of);
@@ -142,27 +140,28 @@ static void divide(struct work *work, struct boxes *boxes, const struct spheres 
     work->n_groups = n_next;
 }
 
-void rcb_partition(struct boxes *boxes, const struct comm *comm, const struct spheres *spheres,
-                   const int64_t *weights)
+void rcb_partition(struct boxes *boxes, const struct comm *comm, int n,
+                   const struct rcb_point *points)
 {
     const size_t n_ranks = (size_t)comm->n_ranks;
     if (comm->n_ranks == 1)
         return;
-    struct work work = {.n_groups = 1, .groups = array_allocate(n_ranks, sizeof *work.groups)};
-    work.group_of = array_allocate((size_t)spheres->n_owned, sizeof *work.group_of);
+    struct work work = {.n_groups = 1, .n_points = n, .points = points};
+    work.groups = array_allocate(n_ranks, sizeof *work.groups);
+    work.group_of = array_allocate((size_t)n, sizeof *work.group_of);
     work.extent = array_allocate(6 * n_ranks, sizeof *work.extent);
     work.histogram = array_allocate(BINS * n_ranks, sizeof *work.histogram);
     int root = 0;
     boxes->n_nodes = 1;
     work.groups[0] = (struct group){0, comm->n_ranks, &root, 0, 0.0, 0.0, 0, 0};
     while (work.n_groups > 0) {
-        measure_extents(&work, comm, spheres);
+        measure_extents(&work, comm);
         for (int round = 0; round < ROUNDS; round++) {
-            fill_histograms(&work, comm, spheres, weights);
+            fill_histograms(&work, comm);
             for (int g = 0; g < work.n_groups; g++)
                 narrow(&work.groups[g], work.histogram + g * BINS, round == 0);
         }
-        divide(&work, boxes, spheres);
+        divide(&work, boxes);
     }
     boxes_update(boxes);
     free(work.groups);

@@ -1,11 +1,11 @@
 /*
  * Weighted recursive coordinate bisection (the paper's low-level decomposition), in parallel.
  *
- * All groups of ranks are halved at once, level by level: the extent of each group's spheres is
+ * All groups of ranks are halved at once, level by level: the extent of each group's points is
  * reduced, the longest side is cut where the weight below it is the group's share, found by
- * histograms of integer weights refined three times.  No particle is gathered anywhere; memory
+ * histograms of integer weights refined three times.  No point is gathered anywhere; memory
  * beside the tree is one histogram a group.  Drawback: a cut is placed to 2^-24 of the extent,
- * so spheres in one plane stay on one side.
+ * so points in one plane stay on one side.
  */
 #ifndef TREMIE_DOMAIN_RCB_H
 #define TREMIE_DOMAIN_RCB_H
@@ -14,11 +14,16 @@
 
 struct boxes;
 struct comm;
-struct spheres;
 
-/* Fills `boxes` (initialised for all ranks) from the owned spheres and their weights.
+/* What is to be shared out, with its cost. */
+struct rcb_point {
+    double place[3]; /* [m] */
+    int64_t weight;
+};
+
+/* Fills `boxes` (initialised for all ranks) from the n points that this rank has.
  * Collective. */
-void rcb_partition(struct boxes *boxes, const struct comm *comm, const struct spheres *spheres,
-                   const int64_t *weights);
+void rcb_partition(struct boxes *boxes, const struct comm *comm, int n,
+                   const struct rcb_point *points);
 
 #endif

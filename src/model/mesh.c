@@ -583,21 +583,25 @@ void mesh_clear(struct mesh *mesh)
     *mesh = (struct mesh){0};
 }
 
+void mesh_update_face(struct mesh *mesh, int f)
+{
+    const struct mesh_face *face = &mesh->faces[f];
+    const struct vec3 area = face_area(face, mesh->place);
+    const struct vec3 normal = vec3_scale(1.0 / vec3_norm(area), area);
+    mesh->face_normal[f] = normal;
+    for (int k = 0; k < face->n; k++) {
+        const struct vec3 from = mesh->place[face->vertices[k]];
+        const struct vec3 to = mesh->place[face->vertices[k + 1 < face->n ? k + 1 : 0]];
+        const struct vec3 along = vec3_sub(to, from);
+        mesh->face_borders[f][k] =
+            (struct mesh_border){from, vec3_cross(normal, along), vec3_dot(along, along)};
+    }
+}
+
 void mesh_update(struct mesh *mesh)
 {
     if (mesh->n_bands > 0)
         update_axis(mesh);
-    for (int f = 0; f < mesh->n_faces; f++) {
-        const struct mesh_face *face = &mesh->faces[f];
-        const struct vec3 area = face_area(face, mesh->place);
-        const struct vec3 normal = vec3_scale(1.0 / vec3_norm(area), area);
-        mesh->face_normal[f] = normal;
-        for (int k = 0; k < face->n; k++) {
-            const struct vec3 from = mesh->place[face->vertices[k]];
-            const struct vec3 to = mesh->place[face->vertices[k + 1 < face->n ? k + 1 : 0]];
-            const struct vec3 along = vec3_sub(to, from);
-            mesh->face_borders[f][k] =
-                (struct mesh_border){from, vec3_cross(normal, along), vec3_dot(along, along)};
-        }
-    }
+    for (int f = 0; f < mesh->n_faces; f++)
+        mesh_update_face(mesh, f);
 }

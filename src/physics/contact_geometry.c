@@ -314,7 +314,7 @@ struct contact_geometry contact_geometry_closest(const struct mesh *mesh, int fe
 static bool face_reaches(const struct mesh *mesh, int f, struct vec3 centre, double reach)
 {
     const double height = face_height(mesh, f, centre);
-    if (height > reach || height < -reach)
+    if (!(height <= reach && height >= -reach)) /* nor does a face whose place is not known */
         return false;
     for (int k = 0; k < mesh->faces[f].n; k++) {
         const struct mesh_border *border = &mesh->face_borders[f][k];

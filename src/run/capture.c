@@ -222,7 +222,9 @@ void capture_take(struct simulation *sim)
         add_contacts(sim, &snapshot->contacts);
         table_arrange(&snapshot->contacts, sim->comm, sim->next_id);
     }
+    deform_skin_show(sim);
     add_bodies(sim, snapshot);
+    deform_skin_hide(sim);
     capture->waits = true;
 }
 

@@ -4,17 +4,15 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/array.h"
 #include "base/report.h"
+#include "base/timer.h"
 #include "job/job.h"
 #include "model/solid_condition.h"
 #include "model/solid_mesh.h"
 #include "run/simulation.h"
 #include "solid/solid_limits.h"
-#include "store/checkpoint.h"
-#include "store/table.h"
 
 /* ---- Building
  * --------------------------------------------------------------------------------- */
@@ -116,83 +114,26 @@ static void prescribe(struct solid *solid, const struct solid_mesh *mesh,
     }
 }
 
-struct place_of_node {
-    double along; /* [m] */
-    int node;
-};
-
-static int compare_places(const void *a, const void *b)
-{
-    const struct place_of_node *p = a, *q = b;
-    if (p->along != q->along)
-        return p->along < q->along ? -1 : 1;
-    return (p->node > q->node) - (p->node < q->node);
-}
-
-static int longest_side(const struct solid *solid)
-{
-    double size[3];
-    int longest = 0;
-    for (int d = 0; d < 3; d++) {
-        double low = solid->reference[0][d], high = low;
-        for (int i = 1; i < solid->n_nodes; i++) {
-            low = solid->reference[i][d] < low ? solid->reference[i][d] : low;
-            high = solid->reference[i][d] > high ? solid->reference[i][d] : high;
-        }
-        size[d] = high - low;
-        longest = size[d] > size[longest] ? d : longest;
-    }
-    return longest;
-}
-
-/* Slabs with as many nodes each. */
-static void share_out(struct deform_body *deform, const struct comm *comm)
-{
-    struct solid *solid = &deform->solid;
-    const int along = longest_side(solid), n = solid->n_nodes;
-    struct place_of_node *order = array_allocate((size_t)n, sizeof *order);
-    bool *moves = array_allocate((size_t)n, sizeof *moves);
-    deform->owner = array_allocate((size_t)n, sizeof *deform->owner);
-    for (int i = 0; i < n; i++)
-        order[i] = (struct place_of_node){solid->reference[i][along], i};
-    qsort(order, (size_t)n, sizeof *order, compare_places);
-    deform->by_owner = array_allocate((size_t)n, sizeof *deform->by_owner);
-    deform->sizes = array_allocate((size_t)comm->n_ranks, sizeof *deform->sizes);
-    for (int k = 0; k < n; k++) {
-        const int q = (int)((int64_t)k * comm->n_ranks / n);
-        deform->by_owner[k] = order[k].node;
-        deform->owner[order[k].node] = q;
-        deform->sizes[q] += (int)sizeof *solid->node;
-        deform->first_own += q < comm->rank;
-    }
-    if (comm->n_ranks > 1)
-        deform->told = array_allocate_rows((size_t)n, sizeof *deform->told);
-    comm_mail_init(&deform->mail, comm);
-    for (int i = 0; i < n; i++)
-        moves[i] = deform->owner[i] == comm->rank;
-    solid_assign(solid, moves);
-    free(moves);
-    free(order);
-}
-
 static void build_body(struct deform *deform, const struct simulation *sim, int b, enum isa isa)
 {
     struct deform_body *own = &deform->list[deform->n++];
     const struct job_body *body = &sim->job->bodies[b];
     struct body_skin *skin = sim->bodies.list[b].skin;
     struct solid_mesh mesh;
-    int n_vertices, (*facets)[4];
+    int n_vertices, *nodes, (*facets)[4];
     *own = (struct deform_body){
         .body = b, .first_node = deform->n_nodes, .first_element = deform->n_elements};
     solid_mesh_build(&mesh, body);
-    solid_mesh_skin(&mesh, &n_vertices, &own->nodes, &facets);
+    solid_mesh_skin(&mesh, &n_vertices, &nodes, &facets);
     CHECK(n_vertices == sim->bodies.list[b].mesh.n_corners, "a skin of %d vertices",
           n_vertices);
     build_solid(&own->solid, &mesh, body, &sim->job->materials[body->material], isa);
     prescribe(&own->solid, &mesh, body);
-    share_out(own, sim->comm);
+    deform_share_init(&own->share, sim->comm, &own->solid);
+    deform_skin_init(&own->skin, nodes, &sim->bodies.list[b]);
     for (int v = 0; v < n_vertices; v++)
-        skin->inverse_mass[v] = 1.0 / own->solid.mass[own->nodes[v]];
+        skin->inverse_mass[v] = 1.0 / own->solid.mass[nodes[v]];
+    deform_skin_renew(own, &sim->bodies.list[b]);
     deform->n_nodes += own->solid.n_nodes;
     deform->n_elements += own->solid.n_elements;
     free(facets);
@@ -203,22 +144,24 @@ void deform_init(struct deform *deform, const struct simulation *sim, enum isa i
 {
     *deform = (struct deform){0};
     deform->list = array_allocate((size_t)sim->bodies.n, sizeof *deform->list);
+    deform->near = array_allocate((size_t)sim->comm->n_ranks, sizeof *deform->near);
+    deform->pushing = array_allocate((size_t)sim->comm->n_ranks, sizeof *deform->pushing);
+    comm_mail_init(&deform->mail, sim->comm);
     for (int b = 0; b < sim->bodies.n; b++)
         if (sim->job->bodies[b].model == JOB_MODEL_SOLID)
             build_body(deform, sim, b, isa);
 }
 
-void deform_clear(struct deform *deform)
+void deform_clear(struct deform *deform, const struct comm *comm)
 {
     for (int k = 0; k < deform->n; k++) {
         solid_destroy(&deform->list[k].solid);
-        free(deform->list[k].nodes);
-        free(deform->list[k].owner);
-        free(deform->list[k].by_owner);
-        free(deform->list[k].sizes);
-        free(deform->list[k].told);
-        comm_mail_clear(&deform->list[k].mail);
+        deform_share_clear(&deform->list[k].share, comm);
+        deform_skin_clear(&deform->list[k].skin);
     }
+    comm_mail_clear(&deform->mail);
+    free(deform->near);
+    free(deform->pushing);
     free(deform->list);
     *deform = (struct deform){0};
 }
@@ -226,78 +169,19 @@ void deform_clear(struct deform *deform)
 /* ---- The step
  * --------------------------------------------------------------------------------- */
 
-static struct vec3 vec3_of(const double *lane)
-{
-    return (struct vec3){lane[0], lane[1], lane[2]};
-}
-
-static void place_skin(const struct deform_body *deform, struct body *body)
-{
-    struct mesh *mesh = &body->mesh;
-    double speed2_max = 0.0;
-    for (int v = 0; v < mesh->n_corners; v++) {
-        const int node = deform->nodes[v];
-        const struct vec3 velocity = vec3_of(solid_velocity(&deform->solid, node));
-        const double speed2 = vec3_dot(velocity, velocity);
-        mesh->place[v] = vec3_of(solid_place(&deform->solid, node));
-        body->skin->velocity[v] = velocity;
-        memset(body->skin->force[v], 0, sizeof body->skin->force[v]);
-        speed2_max = speed2 > speed2_max ? speed2 : speed2_max;
-    }
-    for (int v = mesh->n_corners; v < mesh->n_vertices; v++) {
-        struct vec3 mean = {0.0, 0.0, 0.0};
-        for (int k = 0; k < 4; k++)
-            mean = vec3_axpy(mean, 0.25, mesh->place[mesh->mean_of[v - mesh->n_corners][k]]);
-        mesh->place[v] = mean;
-    }
-    body->speed_max = sqrt(speed2_max);
-    mesh_update(mesh);
-}
-
 void deform_begin(struct simulation *sim)
 {
     for (int k = 0; k < sim->deform.n; k++)
-        place_skin(&sim->deform.list[k], &sim->bodies.list[sim->deform.list[k].body]);
+        deform_skin_place(&sim->deform.list[k], &sim->bodies.list[sim->deform.list[k].body]);
 }
 
-/* Sums of nothing are zero in every limb. */
-static bool is_pushed(const struct exact_sum force[3])
+void deform_agree(struct simulation *sim)
 {
-    for (int x = 0; x < 3; x++)
-        if ((force[x].limb[0] | force[x].limb[1] | force[x].limb[2] | force[x].overflow) != 0)
-            return true;
-    return false;
-}
-
-/* What this rank's spheres do to nodes that others move goes to these. */
-struct push {
-    int vertex;
-    struct exact_sum force[3];
-};
-
-static void exchange_pushes(const struct simulation *sim, struct deform_body *deform,
-                            struct body_skin *skin)
-{
-    const struct comm *comm = sim->comm;
-    const int n = sim->bodies.list[deform->body].mesh.n_corners;
-    struct push push;
-    memset(&push, 0, sizeof push);
-    comm_mail_begin(&deform->mail);
-    for (int v = 0; v < n; v++) {
-        const int owner = deform->owner[deform->nodes[v]];
-        if (owner == comm->rank || !is_pushed(skin->force[v]))
-            continue;
-        push.vertex = v;
-        memcpy(push.force, skin->force[v], sizeof push.force);
-        comm_mail_pack(&deform->mail, owner, &push, sizeof push);
+    for (int k = 0; k < sim->deform.n; k++) {
+        struct body *body = &sim->bodies.list[sim->deform.list[k].body];
+        body->speed_max = deform_skin_speed(&sim->deform.list[k]);
+        comm_max(sim->comm, &body->speed_max, 1);
     }
-    comm_mail_exchange(&deform->mail, comm);
-    for (int q = 0; q < comm->n_ranks; q++)
-        while (comm_mail_waits(&deform->mail, q)) {
-            comm_mail_unpack(&deform->mail, q, &push, sizeof push);
-            for (int x = 0; x < 3; x++)
-                exact_sum_merge(&skin->force[push.vertex][x], &push.force[x]);
-        }
 }
 
 /* Which element failed, and how. */
@@ -314,20 +198,25 @@ static void explain(const struct simulation *sim, const struct deform_body *defo
              fault.place.y, fault.place.z, failures[fault.failure]);
 }
 
+/* Contacts' forces on the nodes that are moved here. */
+static void take_forces(struct deform_body *deform, const struct body_skin *skin)
+{
+    for (int k = 0; k < deform->skin.n_corners; k++) {
+        const int v = deform->skin.vertices[k], node = deform->skin.nodes[v];
+        for (int x = 0; deform->solid.moves[node] && x < 3; x++)
+            deform->solid.contact[node][x] = exact_sum_value(&skin->force[v][x]);
+    }
+}
+
 void deform_plan(struct simulation *sim)
 {
     sim->deform.failed = false;
+    deform_share_push(sim);
+    const double began = timer_now();
     for (int k = 0; k < sim->deform.n; k++) {
         struct deform_body *deform = &sim->deform.list[k];
-        const struct body *body = &sim->bodies.list[deform->body];
         struct solid *solid = &deform->solid;
-        if (sim->comm->n_ranks > 1)
-            exchange_pushes(sim, deform, body->skin);
-        for (int v = 0; v < body->mesh.n_corners; v++) {
-            double *force = solid->contact[deform->nodes[v]];
-            for (int x = 0; x < 3; x++)
-                force[x] = exact_sum_value(&body->skin->force[v][x]);
-        }
+        take_forces(deform, sim->bodies.list[deform->body].skin);
         solid->gravity[0] = sim->gravity.x;
         solid->gravity[1] = sim->gravity.y;
         solid->gravity[2] = sim->gravity.z;
@@ -336,32 +225,41 @@ void deform_plan(struct simulation *sim)
             explain(sim, deform, sim->watch.what, sizeof sim->watch.what);
         }
     }
-}
-
-/* Nodes' places and velocities from those who moved them. */
-static void tell_places(struct deform_body *deform, const struct comm *comm)
-{
-    struct solid *solid = &deform->solid;
-    const int n_own = deform->sizes[comm->rank] / (int)sizeof *solid->node;
-    for (int k = deform->first_own; k < deform->first_own + n_own; k++)
-        deform->told[k] = solid->node[deform->by_owner[k]];
-    comm_gather_parts(comm, deform->told, deform->sizes);
-    for (int k = 0; k < solid->n_nodes; k++)
-        solid->node[deform->by_owner[k]] = deform->told[k];
+    sim->balance.busy += timer_now() - began;
 }
 
 void deform_move(struct simulation *sim)
 {
+    const double began = timer_now();
+    sim->deform.spent = 0.0;
     for (int k = 0; k < sim->deform.n; k++) {
         struct deform_body *deform = &sim->deform.list[k];
         solid_move(&deform->solid, sim->step, sim->dt);
-        if (sim->comm->n_ranks > 1)
-            tell_places(deform, sim->comm);
+        const double spent =
+            deform_skin_speed(deform) * sim->dt / sim->body_allowance[deform->body];
+        sim->deform.spent = spent > sim->deform.spent ? spent : sim->deform.spent;
     }
+    sim->balance.busy += timer_now() - began;
+    deform_share_tell(sim);
 }
 
 /* ---- What others ask
  * -------------------------------------------------------------------------- */
+
+struct deform_sizes deform_sizes(const struct deform *deform)
+{
+    struct deform_sizes sizes = {0};
+    for (int b = 0; b < deform->n; b++) {
+        const struct deform_body *body = &deform->list[b];
+        for (int i = 0; i < body->solid.n_nodes; i++) {
+            sizes.n_nodes += body->solid.moves[i];
+            sizes.n_copies += !body->solid.moves[i] && deform_share_has(body, i);
+        }
+        for (int e = 0; e < body->solid.n_elements; e++)
+            sizes.n_elements += body->solid.slot[e] >= 0;
+    }
+    return sizes;
+}
 
 /* Has a body too much energy in hourglass modes?  The rank with the worst element names it. */
 static bool is_hourglass(struct simulation *sim, const struct deform_body *deform,
@@ -417,101 +315,4 @@ double deform_critical_step(const struct simulation *sim, int *body)
         }
     }
     return least;
-}
-
-/* ---- State
- * ------------------------------------------------------------------------------------ */
-
-enum { NODES, ELEMENTS };
-
-/* Copies the fields of a node or element behind each other into a record (`pack`), or back. */
-static void move_fields(const struct solid *solid, int which, int i, unsigned char *record,
-                        bool pack)
-{
-    const int n = which == NODES ? SOLID_NODE_N_FIELDS : SOLID_ELEMENT_N_FIELDS;
-    const struct field *fields = which == NODES ? solid_node_fields : solid_element_fields;
-    for (int f = 0; f < n; f++) {
-        const struct field_view view =
-            which == NODES ? solid_node_view(solid, (enum solid_node_field)f)
-                           : solid_element_view(solid, (enum solid_element_field)f);
-        const size_t size = field_size(&fields[f]);
-        memcpy(pack ? record : field_at(&view, i), pack ? field_at(&view, i) : record, size);
-        record += size;
-    }
-}
-
-/* Nodes or elements of a solid, and the id of the first. */
-static int rows_of(const struct deform_body *deform, int which, int64_t *first)
-{
-    *first = which == NODES ? deform->first_node : deform->first_element;
-    return which == NODES ? deform->solid.n_nodes : deform->solid.n_elements;
-}
-
-static void collect(struct table *table, const struct simulation *sim, int which, int64_t begin,
-                    int64_t end)
-{
-    unsigned char *record = array_allocate(1, table->record_size);
-    for (int k = 0; k < sim->deform.n; k++) {
-        const struct solid *solid = &sim->deform.list[k].solid;
-        int64_t id;
-        const int n = rows_of(&sim->deform.list[k], which, &id);
-        for (int i = 0; i < n; i++, id++) {
-            const bool counts = which == NODES ? solid->moves[i] : solid_counts(solid, i);
-            if (!counts || id < begin || id >= end)
-                continue;
-            memcpy(record, &id, sizeof id);
-            move_fields(solid, which, i, record + sizeof id, true);
-            table_append(table, record, 1);
-        }
-    }
-    free(record);
-}
-
-static void collect_nodes(struct table *table, const void *from, int64_t begin, int64_t end)
-{
-    collect(table, from, NODES, begin, end);
-}
-
-static void collect_elements(struct table *table, const void *from, int64_t begin, int64_t end)
-{
-    collect(table, from, ELEMENTS, begin, end);
-}
-
-int deform_tables(const struct simulation *sim, struct checkpoint_more *tables)
-{
-    if (sim->deform.n == 0)
-        return 0;
-    tables[NODES] = (struct checkpoint_more){.name = "nodes",
-                                             .n_fields = SOLID_NODE_N_FIELDS,
-                                             .fields = solid_node_fields,
-                                             .n_ids = sim->deform.n_nodes,
-                                             .collect = collect_nodes,
-                                             .from = sim};
-    tables[ELEMENTS] = (struct checkpoint_more){.name = "elements",
-                                                .n_fields = SOLID_ELEMENT_N_FIELDS,
-                                                .fields = solid_element_fields,
-                                                .n_ids = sim->deform.n_elements,
-                                                .collect = collect_elements,
-                                                .from = sim};
-    return 2;
-}
-
-void deform_restore(struct simulation *sim, const struct checkpoint_more *tables)
-{
-    for (int k = 0; k < sim->deform.n; k++) {
-        struct solid *solid = &sim->deform.list[k].solid;
-        for (int which = 0; which < 2; which++) {
-            int64_t id;
-            const int n = rows_of(&sim->deform.list[k], which, &id);
-            for (int i = 0; i < n; i++, id++)
-                move_fields(solid, which, i,
-                            tables[which].records + (size_t)id * tables[which].record_size +
-                                sizeof id,
-                            false);
-        }
-        bool *moves = array_allocate((size_t)solid->n_nodes, sizeof *moves);
-        memcpy(moves, solid->moves, (size_t)solid->n_nodes * sizeof *moves);
-        solid_assign(solid, moves);
-        free(moves);
-    }
 }

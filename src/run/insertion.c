@@ -451,12 +451,14 @@ int insertions_try(struct simulation *sim, const unsigned char *removed)
         any = has_occasion(sim, &all->list[k]) || any;
     if (!any)
         return 0;
+    deform_skin_show(sim);
     facet_contacts_refit(&sim->facets, &sim->bodies);
     move_solids(sim);
     fill_crowd(sim, removed);
     for (int k = 0; k < all->n; k++)
         if (all->list[k].occasion)
             insert(sim, &all->list[k]);
+    deform_skin_hide(sim);
     crowd_clear(&all->crowd);
     return all->n_new;
 }

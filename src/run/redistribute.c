@@ -80,11 +80,13 @@ static void choose_body_allowances(struct simulation *sim)
     }
 }
 
-/* Share of its allowance that the fastest moving body uses in a step. */
+/* Share of its allowance that the fastest moving body uses in a step, on any rank. */
 static double bodies_spend(const struct simulation *sim)
 {
-    double most = 0.0;
+    double most = sim->deform.spent;
     for (int b = 0; b < sim->bodies.n; b++) {
+        if (sim->bodies.list[b].skin != NULL)
+            continue;
         const double spent = sim->bodies.list[b].speed_max * sim->dt / sim->body_allowance[b];
         most = spent > most ? spent : most;
     }
@@ -111,11 +113,15 @@ void redistribute_inner(struct simulation *sim)
 /* The low level: boxes are cut anew where work has drifted apart, or at first. */
 static void repartition(struct simulation *sim)
 {
-    int64_t *weights = array_allocate((size_t)sim->spheres.n_owned, sizeof *weights);
-    balance_weights(weights, &sim->spheres, sim->job->decomposition.weights, &sim->contacts.now,
+    int n = sim->spheres.n_owned;
+    struct rcb_point *points =
+        array_allocate((size_t)(n + deform_sizes(&sim->deform).n_nodes), sizeof *points);
+    balance_spheres(points, &sim->spheres, sim->job->decomposition.weights, &sim->contacts.now,
                     &sim->candidates, &sim->facets);
-    rcb_partition(&sim->boxes, sim->comm, &sim->spheres, weights);
-    free(weights);
+    for (int b = 0; b < sim->deform.n; b++)
+        n += balance_nodes(points + n, &sim->deform.list[b].solid);
+    rcb_partition(&sim->boxes, sim->comm, n, points);
+    free(points);
     sim->runtime.repartitions++;
 }
 
@@ -178,8 +184,6 @@ static int search(struct simulation *sim, const int *moved, bool some_left_run)
 {
     struct spheres *spheres = &sim->spheres;
     const bool all_pairs = sim->job->force.search == JOB_SEARCH_ALL_PAIRS;
-    if (sim->bodies.n_forced > 0 || sim->deform.n > 0)
-        choose_body_allowances(sim);
     spheres_pad(spheres);
     candidates_search(&sim->candidates, spheres, all_pairs);
     if (!all_pairs)
@@ -213,6 +217,9 @@ static void update_subdomains(struct simulation *sim, bool moves, bool sort_all,
     choose_allowances(sim, 0, spheres->n_owned);
     halo_build(&sim->halo, sim->comm, &sim->boxes, spheres, &sim->materials, sim->half_buffer);
     choose_allowances(sim, spheres->n_owned, spheres->n_all);
+    deform_agree(sim);
+    choose_body_allowances(sim);
+    deform_share_renew(sim);
     if (!moves)
         return;
     migrate_find_moved(&sim->migrate, spheres);
@@ -260,7 +267,6 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
 bool redistribute_first(struct simulation *sim)
 {
     sim->asked_most = ASKED_LEAST;
-    choose_body_allowances(sim);
     if (has_fixed_grid(sim))
         boxes_set_grid(&sim->boxes, sim->job->decomposition.fixed, sim->job->domain.min,
                        sim->job->domain.max);

@@ -39,11 +39,16 @@ static void add_columns(struct series *table)
                       "redistributions");
     series_add_column(table, "1", "repartitions (low level)", "repartitions");
     series_add_column(table, "1", "spheres that changed rank", "migrated");
+    series_add_column(table, "1", "nodes of bodies that deform that changed rank",
+                      "nodes_migrated");
+    series_add_column(table, "bytes", "sent each step about such nodes, since the row before",
+                      "nodes_told");
     series_add_column(table, "1", "largest over mean working time at the last verdict",
                       "imbalance");
-    static const char *const sizes[] = {"owned",       "ghosts",     "internal",
-                                        "interfacial", "candidates", "contacts"};
-    for (int k = 0; k < 6; k++) {
+    static const char *const sizes[] = {"owned",       "ghosts",      "internal",
+                                        "interfacial", "candidates",  "contacts",
+                                        "nodes",       "node_copies", "elements"};
+    for (int k = 0; k < (int)(sizeof sizes / sizeof *sizes); k++) {
         series_add_column(table, "1", "number a rank, least", "%s.min", sizes[k]);
         series_add_column(table, "1", "number a rank, mean", "%s.mean", sizes[k]);
         series_add_column(table, "1", "number a rank, largest", "%s.max", sizes[k]);
@@ -140,19 +145,22 @@ void runtime_row(struct runtime *runtime, const struct comm *comm, int64_t step,
     int n = 7;
     for (int p = 0; p < RUNTIME_N_PHASES; p++)
         spread(comm, row, &n, (int64_t)(runtime->phase[p] * NANOSECONDS), 1.0 / NANOSECONDS);
-    int64_t migrated = runtime->migrated;
-    comm_sum_int(comm, &migrated, 1);
+    int64_t sums[] = {runtime->migrated, runtime->nodes_migrated, runtime->told};
+    comm_sum_int(comm, sums, 3);
     const double counts[] = {(double)runtime->searches,
                              (double)runtime->prunes,
                              (double)runtime->redistributions,
                              (double)runtime->repartitions,
-                             (double)migrated,
+                             (double)sums[0],
+                             (double)sums[1],
+                             (double)sums[2],
                              runtime->imbalance};
-    for (int k = 0; k < 6; k++)
+    for (size_t k = 0; k < sizeof counts / sizeof *counts; k++)
         row[n++] = counts[k];
     const int64_t numbers[] = {sizes->n_owned,       sizes->n_ghosts,     sizes->n_internal,
-                               sizes->n_interfacial, sizes->n_candidates, sizes->n_contacts};
-    for (int k = 0; k < 6; k++)
+                               sizes->n_interfacial, sizes->n_candidates, sizes->n_contacts,
+                               sizes->n_nodes,       sizes->n_copies,     sizes->n_elements};
+    for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         spread(comm, row, &n, numbers[k], 1.0);
     spread(comm, row, &n, (int64_t)runtime_memory(), 1.0);
     CHECK(n == runtime->table.n_columns, "%d values for %d columns", n,
@@ -163,6 +171,7 @@ void runtime_row(struct runtime *runtime, const struct comm *comm, int64_t step,
         runtime->phase[p] = 0.0;
     runtime->searches = runtime->prunes = runtime->redistributions = runtime->repartitions = 0;
     runtime->migrated = runtime->particle_steps = 0;
+    runtime->nodes_migrated = runtime->told = 0;
     runtime->row_step = step;
     runtime->row_started = now;
 }

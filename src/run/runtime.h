@@ -31,6 +31,8 @@ enum runtime_phase {
 struct runtime_sizes {
     int64_t n_owned, n_ghosts, n_internal, n_interfacial, n_candidates, n_contacts;
     int64_t n_spheres; /* in the run */
+    int64_t n_nodes, n_copies,
+        n_elements; /* of bodies that deform: moved, not moved, computed */
 };
 
 struct runtime {
@@ -39,7 +41,8 @@ struct runtime {
     double started, row_started;    /* [s] */
     int64_t row_step;
     int64_t searches, prunes, redistributions, repartitions, migrated,
-        particle_steps; /* since the last row */
+        particle_steps;           /* since the last row */
+    int64_t nodes_migrated, told; /* of bodies that deform: how many; bytes sent about them */
     double imbalance;
     struct series table;      /* on rank 0 */
     struct series subdomains; /* boxes of all ranks at each save, on rank 0 */

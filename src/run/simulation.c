@@ -15,6 +15,7 @@
 #include "model/order.h"
 #include "model/packings.h"
 #include "run/chain.h"
+#include "run/deform_state.h"
 #include "run/redistribute.h"
 #include "store/body_notes.h"
 #include "store/checkpoint.h"
@@ -292,7 +293,7 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
                                     .full = sim->materials.full,
                                     .ledger = sim->job->energy_ledger,
                                     .removals = job->n_removals > 0};
-    checkpoint.n_more = deform_tables(sim, checkpoint.more);
+    checkpoint.n_more = deform_state_tables(sim, checkpoint.more);
     int status = checkpoint_read(comm, checkpoint_path, &checkpoint);
     const bool fits = status == REPORT_FINISHED && fits_job(sim, &checkpoint) &&
                       restore_monitors(sim, &checkpoint) == REPORT_FINISHED &&
@@ -311,7 +312,7 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
     }
     sim->step = checkpoint.step;
     sim->next_id = checkpoint.next_id;
-    deform_restore(sim, checkpoint.more);
+    deform_state_restore(sim, checkpoint.more);
     sim->spheres.n_all = sim->spheres.n_owned;
     sim->migrate.n_contacts = sim->migrate.contact_capacity = checkpoint.n_contacts;
     sim->migrate.contacts = checkpoint.contacts;
@@ -339,7 +340,7 @@ void simulation_destroy(struct simulation *sim)
     halo_clear(&sim->halo);
     migrate_clear(&sim->migrate);
     forced_clear(&sim->forced);
-    deform_clear(&sim->deform);
+    deform_clear(&sim->deform, sim->comm);
     local_damping_clear(&sim->local_damping);
     sections_clear(&sim->sections);
     contents_clear(&sim->contents);
@@ -374,6 +375,7 @@ static int write_series(struct simulation *sim, const struct run_folder *folder)
 
 struct runtime_sizes simulation_sizes(const struct simulation *sim)
 {
+    const struct deform_sizes solids = deform_sizes(&sim->deform);
     return (struct runtime_sizes){
         .n_owned = sim->spheres.n_owned,
         .n_ghosts = sim->spheres.n_all - sim->spheres.n_owned,
@@ -382,6 +384,9 @@ struct runtime_sizes simulation_sizes(const struct simulation *sim)
         .n_candidates = sim->candidates.n,
         .n_contacts = sim->contacts.now.n,
         .n_spheres = sim->n_spheres,
+        .n_nodes = solids.n_nodes,
+        .n_copies = solids.n_copies,
+        .n_elements = solids.n_elements,
     };
 }
 
@@ -435,7 +440,7 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
                                     .ledger = sim->job->energy_ledger,
                                     .removals = sim->removals.n > 0,
                                     .held = {sim, pairs_held, facets_held}};
-    checkpoint.n_more = deform_tables(sim, checkpoint.more);
+    checkpoint.n_more = deform_state_tables(sim, checkpoint.more);
     checkpoint.title = array_string(sim->job->title);
     checkpoint.job_text = array_string(job_text);
     checkpoint.n_contacts = contact_set_count(&sim->contacts, &sim->spheres);

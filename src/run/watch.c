@@ -429,6 +429,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
     enum {
         SPENT_SEARCH,
         SPENT_INNER,
+        SPENT_DEFORM,
         OVERLAP,
         MOTION,
         BAD,
@@ -445,6 +446,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
     double values[N_VALUES] = {
         [SPENT_SEARCH] = spent[0],
         [SPENT_INNER] = spent[1],
+        [SPENT_DEFORM] = sim->deform.spent,
         [OVERLAP] = pairs > facets ? pairs : facets,
         [MOTION] = motion,
         [BAD] = bad ? 1.0 : 0.0,
@@ -457,6 +459,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
     comm_max(sim->comm, values, N_VALUES);
     spent[0] = values[SPENT_SEARCH];
     spent[1] = values[SPENT_INNER];
+    sim->deform.spent = values[SPENT_DEFORM];
     watch->overlap = values[OVERLAP];
     watch->motion = values[MOTION];
     watch->rate = watch->rounding = 0.0;

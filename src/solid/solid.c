@@ -89,7 +89,7 @@ static void build_nodes(struct solid *solid, const struct solid_parts *mesh)
     const size_t n = (size_t)mesh->n_nodes;
     solid->n_nodes = mesh->n_nodes;
     solid->reference = array_allocate(n, sizeof *solid->reference);
-    solid->node = array_allocate_rows(n + SOLID_ELEMENT_CORNERS, sizeof *solid->node);
+    solid->node = array_allocate_sparse(n + SOLID_ELEMENT_CORNERS, sizeof *solid->node);
     solid->mass = array_allocate(n, sizeof *solid->mass);
     solid->internal = array_allocate(n, sizeof *solid->internal);
     solid->external = array_allocate(n, sizeof *solid->external);
@@ -112,7 +112,7 @@ static void build_elements(struct solid *solid, const struct solid_parts *mesh)
     solid->material = array_allocate(n, sizeof *solid->material);
     solid->alive = array_allocate(n, sizeof *solid->alive);
     solid->element_mass = array_allocate(padded, sizeof *solid->element_mass);
-    solid->state = array_allocate_rows(padded, sizeof *solid->state);
+    solid->state = array_allocate_sparse(padded, sizeof *solid->state);
     solid->slot = array_allocate(n, sizeof *solid->slot);
     memcpy(solid->shape, mesh->shapes, n * sizeof *solid->shape);
     memcpy(solid->corners, mesh->corners, n * sizeof *solid->corners);
@@ -132,9 +132,8 @@ static void build_mass(struct solid *solid)
         CHECK(solid->material[e] >= 0 && solid->material[e] < solid->n_materials,
               "element %d is of the material %d", e, solid->material[e]);
         solid->alive[e] = 1;
-        solid->state[e].volume = solid_element_volume(solid->shape[e], x);
-        solid->element_mass[e] =
-            solid->materials[solid->material[e]].density * solid->state[e].volume;
+        solid->element_mass[e] = solid->materials[solid->material[e]].density *
+                                 solid_element_volume(solid->shape[e], x);
         for (int c = 0; c < n; c++)
             solid->mass[solid->corners[e][c]] += solid->element_mass[e] / n;
     }
@@ -197,6 +196,7 @@ void solid_destroy(struct solid *solid)
     free(solid->materials);
     free(solid->lists);
     free(solid->listed);
+    free(solid->here);
     free(solid->slot);
     free(solid->force);
     *solid = (struct solid){0};
@@ -261,10 +261,8 @@ int solid_corner_places(const struct solid *solid, int element,
 
 /* ------------------------------------------------------------------- who computes */
 
-static bool is_computed(const struct solid *solid, int element)
+static bool has_moved_corner(const struct solid *solid, int element)
 {
-    if (!solid->alive[element])
-        return false;
     for (int c = 0; c < solid_element_corners(solid->shape[element]); c++)
         if (solid->moves[solid->corners[element][c]])
             return true;
@@ -278,8 +276,8 @@ static void list_part(struct solid *solid, int part, enum solid_element_shape sh
     const int begin = part * SOLID_PART, end = begin + SOLID_PART;
     struct solid_list list = {part, shape, material, solid->n_listed, 0};
     for (int e = begin; e < end && e < solid->n_elements; e++) {
-        if (solid->shape[e] != shape || solid->material[e] != material ||
-            !is_computed(solid, e))
+        if (solid->shape[e] != shape || solid->material[e] != material || !solid->alive[e] ||
+            !has_moved_corner(solid, e))
             continue;
         solid->slot[e] = *n_slots + list.n++;
         ARRAY_GROW(solid->listed, solid->n_listed + 1, solid->listed_capacity);
@@ -301,6 +299,23 @@ static int n_parts(const struct solid *solid)
     return (solid->n_elements + SOLID_PART - 1) / SOLID_PART;
 }
 
+static void list_nodes(struct solid *solid)
+{
+    bool *is_here = array_allocate((size_t)solid->n_nodes, sizeof *is_here);
+    memcpy(is_here, solid->moves, (size_t)solid->n_nodes * sizeof *is_here);
+    for (int e = 0; e < solid->n_elements; e++)
+        for (int c = 0; solid->slot[e] >= 0 && c < solid_element_corners(solid->shape[e]); c++)
+            is_here[solid->corners[e][c]] = true;
+    solid->n_here = 0;
+    for (int i = 0; i < solid->n_nodes; i++) {
+        if (!is_here[i])
+            continue;
+        ARRAY_GROW(solid->here, solid->n_here + 1, solid->here_capacity);
+        solid->here[solid->n_here++] = i;
+    }
+    free(is_here);
+}
+
 void solid_assign(struct solid *solid, const bool *moves)
 {
     int slots_most = 0;
@@ -316,11 +331,30 @@ void solid_assign(struct solid *solid, const bool *moves)
                 list_part(solid, part, (enum solid_element_shape)shape, material, &n_slots);
         slots_most = n_slots > slots_most ? n_slots : slots_most;
     }
+    list_nodes(solid);
     if (slots_most > solid->force_capacity) {
         free(solid->force);
         solid->force = array_allocate_rows((size_t)slots_most, sizeof *solid->force);
         solid->force_capacity = slots_most;
     }
+}
+
+void solid_forget(struct solid *solid, const bool *keep)
+{
+    const size_t n_nodes = (size_t)solid->n_nodes, n_elements = (size_t)solid->n_elements;
+    bool *here = array_allocate(n_nodes + n_elements, sizeof *here), *elements = here + n_nodes;
+    memcpy(here, keep, n_nodes * sizeof *here);
+    for (int k = 0; k < solid->n_here; k++)
+        here[solid->here[k]] = true;
+    for (int e = 0; e < solid->n_elements; e++)
+        elements[e] = has_moved_corner(solid, e); /* of failed ones too: what they took up */
+    array_forget(solid->node, n_nodes, sizeof *solid->node, here);
+    array_forget(solid->internal, n_nodes, sizeof *solid->internal, here);
+    array_forget(solid->external, n_nodes, sizeof *solid->external, here);
+    array_forget(solid->contact, n_nodes, sizeof *solid->contact, here);
+    array_forget(solid->work, n_nodes, sizeof *solid->work, here);
+    array_forget(solid->state, n_elements, sizeof *solid->state, elements);
+    free(here);
 }
 
 void solid_kill(struct solid *solid, int element)
@@ -382,8 +416,10 @@ static int compute_part(struct solid *solid, int k, int64_t step, double dt, boo
 bool solid_forces(struct solid *solid, int64_t step, double dt)
 {
     bool failed = false;
-    memset(solid->internal, 0, (size_t)solid->n_nodes * sizeof *solid->internal);
-    memset(solid->external, 0, (size_t)solid->n_nodes * sizeof *solid->external);
+    for (int k = 0; k < solid->n_here; k++) {
+        memset(solid->internal[solid->here[k]], 0, sizeof *solid->internal);
+        memset(solid->external[solid->here[k]], 0, sizeof *solid->external);
+    }
     for (int k = 0; k < solid->n_lists;)
         k = compute_part(solid, k, step, dt, &failed);
     solid_loads_apply(solid, (double)step * dt, solid->external);
@@ -481,7 +517,8 @@ void solid_move(struct solid *solid, int64_t step, double dt)
 {
     const struct pace pace = pace_of(solid, dt);
     solid_supports_set(&solid->supports, step + 1, dt);
-    for (int i = 0; i < solid->n_nodes; i++) {
+    for (int k = 0; k < solid->n_here; k++) {
+        const int i = solid->here[k];
         if (!solid->moves[i])
             continue;
         const struct solid_advance advance = advance_at(solid, i, &pace);

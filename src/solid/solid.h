@@ -111,7 +111,9 @@ struct solid {
     int n_lists, lists_capacity; /* in ascending order of parts */
     struct solid_list *lists;
     int n_listed, listed_capacity;
-    int *listed;                       /* elements, list after list */
+    int *listed; /* elements, list after list */
+    int n_here, here_capacity;
+    int *here;                         /* nodes of these, ascending, and others moved here */
     int *slot;                         /* of each element in `force`; -1: not computed here */
     struct solid_element_force *force; /* of one part */
     int force_capacity;
@@ -151,6 +153,9 @@ struct field_view solid_element_view(const struct solid *solid, enum solid_eleme
 /* Chooses the nodes that this rank moves (NULL: all) and lists the living elements that are
  * computed for them.  Due again after solid_kill() and after `alive` was read from a file. */
 void solid_assign(struct solid *solid, const bool *moves);
+/* Gives back the memory of all that is neither moved nor computed here, nor among the nodes to
+ * keep, and forgets its state. */
+void solid_forget(struct solid *solid, const bool *keep);
 /* The element resists nothing from now on; its mass stays with its nodes. */
 void solid_kill(struct solid *solid, int element);
 /* Is this rank the one that counts the element?  The one that moves its first corner. */

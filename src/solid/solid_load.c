@@ -85,13 +85,13 @@ static void apply_pressure(const struct solid *solid, const struct solid_load *l
         const int n = solid_side_nodes(solid, side->element, side->side, nodes);
         CHECK(n > 0, "element %d has no side %d", side->element, side->side);
         bool here = false;
-        double x[SOLID_SIDE_NODES][3] = {{0.0}}, area[SOLID_SIDE_NODES][3];
-        for (int c = 0; c < n; c++) {
+        for (int c = 0; c < n; c++)
             here |= solid->moves[nodes[c]];
-            memcpy(x[c], solid_place(solid, nodes[c]), sizeof x[c]);
-        }
         if (!here || !solid->alive[side->element])
             continue;
+        double x[SOLID_SIDE_NODES][3] = {{0.0}}, area[SOLID_SIDE_NODES][3];
+        for (int c = 0; c < n; c++)
+            memcpy(x[c], solid_place(solid, nodes[c]), sizeof x[c]);
         solid_side_areas(n, x, area);
         for (int c = 0; c < n; c++)
             if (solid->moves[nodes[c]])

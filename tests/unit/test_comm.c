@@ -80,6 +80,34 @@ TEST(mail_arrives_whole_and_in_order)
     comm_mail_clear(&mail);
 }
 
+/* Along a line of ranks, so that those at the ends have one to write to and others two. */
+TEST(mail_between_some_goes_to_these_alone)
+{
+    const struct comm comm = comm_world();
+    struct comm_mail mail;
+    int ranks[2], n = 0;
+    for (int q = comm.rank - 1; q <= comm.rank + 1; q += 2)
+        if (q >= 0 && q < comm.n_ranks)
+            ranks[n++] = q;
+    comm_mail_init(&mail, &comm);
+    for (int round = 0; round < 9; round++) {
+        comm_mail_begin(&mail);
+        for (int k = 0; k < n; k++)
+            for (int l = 0; l < letters(round, comm.rank, ranks[k]); l++)
+                comm_mail_pack(&mail, ranks[k], &(char){(char)('a' + round)}, 1);
+        comm_mail_exchange_with(&mail, &comm, n, ranks);
+        for (int k = 0; k < n; k++) {
+            int arrived = 0;
+            for (char mark; comm_mail_waits(&mail, ranks[k]); arrived++) {
+                comm_mail_unpack(&mail, ranks[k], &mark, 1);
+                EXPECT(mark == 'a' + round);
+            }
+            EXPECT(arrived == letters(round, ranks[k], comm.rank));
+        }
+    }
+    comm_mail_clear(&mail);
+}
+
 TEST(mail_carries_large_letters)
 {
     enum { SIZE = 3 * 1000 * 1000 }; /* [bytes], far beyond what is sent eagerly */

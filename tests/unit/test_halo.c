@@ -59,11 +59,13 @@ static void begin(struct scene *scene)
     spheres_init(&scene->spheres);
     struct spheres all;
     spheres_init(&all);
-    int64_t *weights = array_allocate((size_t)cloud.n, sizeof *weights);
-    for (int id = 0; id < cloud.n; id++)
-        weights[cloud_add(&all, id, cloud.x[id], cloud.radius[id])] = 1;
-    all.n_owned = scene->comm.rank == 0 ? all.n_owned : 0;
-    rcb_partition(&scene->boxes, &scene->comm, &all, weights);
+    struct rcb_point *points = array_allocate((size_t)cloud.n, sizeof *points);
+    for (int id = 0; id < cloud.n; id++) {
+        cloud_add(&all, id, cloud.x[id], cloud.radius[id]);
+        memcpy(points[id].place, cloud.x[id], sizeof points[id].place);
+        points[id].weight = 1;
+    }
+    rcb_partition(&scene->boxes, &scene->comm, scene->comm.rank == 0 ? cloud.n : 0, points);
     boxes_update(&scene->boxes);
     for (int cell = 0; cell < 23; cell++) {
         for (int id = 0; id < cloud.n; id++) {
@@ -76,7 +78,7 @@ static void begin(struct scene *scene)
         }
     }
     spheres_clear(&all);
-    free(weights);
+    free(points);
     halo_init(&scene->halo, &scene->comm);
     halo_build(&scene->halo, &scene->comm, &scene->boxes, &scene->spheres, &materials, 0.01);
 }
@@ -126,6 +128,33 @@ static void expect_complete(const struct scene *scene)
     free(at);
 }
 
+/* Is it known that the rank's spheres reach the box around a? */
+static bool is_reached(const struct scene *scene, int rank, int a)
+{
+    const double size = cloud.radius[a] + cloud.allowance[a];
+    double low[3], high[3];
+    for (int k = 0; k < 3; k++) {
+        low[k] = cloud.x[a][k] - size;
+        high[k] = cloud.x[a][k] + size;
+    }
+    return halo_reaches(&scene->halo, rank, low, high);
+}
+
+/* Who may touch things is known to all; returns how many ranks are known not to. */
+static int expect_reached(const struct scene *scene)
+{
+    int n_missed = 0, n_far = 0;
+    for (int a = 0; a < cloud.n && scene->comm.n_ranks > 1; a++) {
+        for (int b = 0; b < cloud.n; b++)
+            n_missed += may_touch(a, b) &&
+                        !is_reached(scene, boxes_owner(&scene->boxes, cloud.x[b]), a);
+        for (int q = 0; q < scene->comm.n_ranks; q++)
+            n_far += !is_reached(scene, q, a);
+    }
+    EXPECT(n_missed == 0);
+    return n_far;
+}
+
 /* Ghosts hold what their owners hold at this time, and are in canonical order. */
 static void expect_copies(const struct scene *scene, int time)
 {
@@ -171,6 +200,7 @@ static int64_t check_scene(void)
     struct scene scene;
     begin(&scene);
     expect_complete(&scene);
+    expect_reached(&scene);
     expect_copies(&scene, 0);
     expect_classes(&scene);
     for (int time = 1; time < 4; time++) {
@@ -265,6 +295,7 @@ TEST(built_anew)
     struct scene scene;
     fill(400, 1.0, 1.0, 1.0, 0.03);
     begin(&scene);
+    EXPECT(expect_reached(&scene) >= 100 * (scene.comm.n_ranks - 1));
     for (int round = 0; round < 6; round++) {
         const double radius = round % 2 == 0 ? 0.01 : 0.2;
         for (int id = 0; id < cloud.n; id++)
@@ -315,8 +346,10 @@ static void expect_images(const struct scene *scene, int time)
                 }
                 const double reach =
                     cloud.radius[a] + cloud.allowance[a] + cloud.radius[b] + cloud.allowance[b];
+                const int owner = boxes_owner(&scene->boxes, cloud.x[b]);
                 n_missing +=
-                    distance2 < reach * reach && !has_image(scene, b, halo->shifts[s], time);
+                    distance2 < reach * reach && (!has_image(scene, b, halo->shifts[s], time) ||
+                                                  !is_reached(scene, owner, a));
             }
         }
     }

@@ -26,16 +26,16 @@ static struct cloud cloud;
 
 static void partition(struct boxes *boxes, const struct comm *comm)
 {
-    struct spheres spheres;
-    int64_t *weights = array_allocate((size_t)cloud.n, sizeof *weights);
-    spheres_init(&spheres);
-    for (int id = comm->rank; id < cloud.n; id += comm->n_ranks)
-        weights[cloud_add(&spheres, id, cloud.x[id], 0.1)] = cloud.weight[id];
+    struct rcb_point *points = array_allocate((size_t)cloud.n, sizeof *points);
+    int n = 0;
+    for (int id = comm->rank; id < cloud.n; id += comm->n_ranks) {
+        memcpy(points[n].place, cloud.x[id], sizeof points[n].place);
+        points[n++].weight = cloud.weight[id];
+    }
     boxes_init(boxes, comm->n_ranks);
-    rcb_partition(boxes, comm, &spheres, weights);
+    rcb_partition(boxes, comm, n, points);
     boxes_update(boxes);
-    spheres_clear(&spheres);
-    free(weights);
+    free(points);
 }
 
 static bool is_inside(const struct boxes *boxes, int rank, const double *x)

@@ -1,0 +1,182 @@
+/* See deform_skin.h. */
+#include "run/deform_skin.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "run/simulation.h"
+
+void deform_skin_init(struct deform_skin *skin, int *nodes, const struct body *body)
+{
+    const struct mesh *mesh = &body->mesh;
+    *skin = (struct deform_skin){.nodes = nodes};
+    skin->vertices = array_allocate((size_t)mesh->n_vertices, sizeof *skin->vertices);
+    skin->is_here = array_allocate((size_t)mesh->n_vertices, sizeof *skin->is_here);
+    skin->faces = array_allocate((size_t)mesh->n_faces, sizeof *skin->faces);
+}
+
+void deform_skin_clear(struct deform_skin *skin)
+{
+    free(skin->nodes);
+    free(skin->vertices);
+    free(skin->is_here);
+    free(skin->faces);
+    *skin = (struct deform_skin){0};
+}
+
+static struct vec3 vec3_of(const double *lane)
+{
+    return (struct vec3){lane[0], lane[1], lane[2]};
+}
+
+static void place_mean(struct mesh *mesh, int v)
+{
+    struct vec3 mean = {0.0, 0.0, 0.0};
+    for (int k = 0; k < 4; k++)
+        mean = vec3_axpy(mean, 0.25, mesh->place[mesh->mean_of[v - mesh->n_corners][k]]);
+    mesh->place[v] = mean;
+}
+
+void deform_skin_place(const struct deform_body *deform, struct body *body)
+{
+    const struct deform_skin *skin = &deform->skin;
+    struct mesh *mesh = &body->mesh;
+    double speed2_max = 0.0;
+    for (int k = 0; k < skin->n_corners; k++) {
+        const int v = skin->vertices[k], node = skin->nodes[v];
+        const struct vec3 velocity = vec3_of(solid_velocity(&deform->solid, node));
+        const double speed2 = vec3_dot(velocity, velocity);
+        mesh->place[v] = vec3_of(solid_place(&deform->solid, node));
+        body->skin->velocity[v] = velocity;
+        memset(body->skin->force[v], 0, sizeof body->skin->force[v]);
+        speed2_max = speed2 > speed2_max ? speed2 : speed2_max;
+    }
+    for (int k = skin->n_corners; k < skin->n_vertices; k++)
+        place_mean(mesh, skin->vertices[k]);
+    for (int k = 0; k < skin->n_faces; k++)
+        mesh_update_face(mesh, skin->faces[k]);
+    body->speed_max = sqrt(speed2_max);
+}
+
+/* A face without a normal is not found, wherever its borders may be. */
+static void place_nowhere(struct mesh *mesh)
+{
+    const struct vec3 none = {(double)NAN, (double)NAN, (double)NAN};
+    for (int v = 0; v < mesh->n_vertices; v++)
+        mesh->place[v] = none;
+    for (int f = 0; f < mesh->n_faces; f++)
+        mesh->face_normal[f] = none;
+}
+
+void deform_skin_forget(const struct deform_skin *skin, struct mesh *mesh)
+{
+    bool *keep = array_allocate((size_t)mesh->n_faces, sizeof *keep);
+    for (int k = 0; k < skin->n_faces; k++)
+        keep[skin->faces[k]] = true;
+    array_forget(mesh->face_borders, (size_t)mesh->n_faces, sizeof *mesh->face_borders, keep);
+    free(keep);
+}
+
+static void list_vertices(const struct deform_body *deform, const struct mesh *mesh)
+{
+    const struct deform_skin *skin = &deform->skin;
+    for (int v = 0; v < mesh->n_corners; v++)
+        skin->is_here[v] = deform_share_has(deform, skin->nodes[v]);
+    for (int v = mesh->n_corners; v < mesh->n_vertices; v++) {
+        skin->is_here[v] = 1;
+        for (int k = 0; k < 4; k++)
+            skin->is_here[v] &= skin->is_here[mesh->mean_of[v - mesh->n_corners][k]];
+    }
+}
+
+void deform_skin_renew(struct deform_body *deform, struct body *body)
+{
+    struct deform_skin *skin = &deform->skin;
+    struct mesh *mesh = &body->mesh;
+    list_vertices(deform, mesh);
+    skin->n_vertices = skin->n_corners = skin->n_faces = 0;
+    for (int v = 0; v < mesh->n_vertices; v++) {
+        if (skin->is_here[v] == 0)
+            continue;
+        skin->vertices[skin->n_vertices++] = v;
+        skin->n_corners += v < mesh->n_corners;
+    }
+    for (int f = 0; f < mesh->n_faces; f++) {
+        const int *v = mesh->faces[f].vertices;
+        if (skin->is_here[v[0]] & skin->is_here[v[1]] & skin->is_here[v[2]])
+            skin->faces[skin->n_faces++] = f;
+    }
+    if (skin->n_vertices < mesh->n_vertices)
+        place_nowhere(mesh);
+    deform_skin_place(deform, body);
+}
+
+double deform_skin_speed(const struct deform_body *deform)
+{
+    double speed2_max = 0.0;
+    for (int k = 0; k < deform->skin.n_corners; k++) {
+        const int node = deform->skin.nodes[deform->skin.vertices[k]];
+        if (!deform->solid.moves[node])
+            continue;
+        const struct vec3 velocity = vec3_of(solid_velocity(&deform->solid, node));
+        const double speed2 = vec3_dot(velocity, velocity);
+        speed2_max = speed2 > speed2_max ? speed2 : speed2_max;
+    }
+    return sqrt(speed2_max);
+}
+
+/* ---- As a whole
+ * ------------------------------------------------------------------------------- */
+
+/* Where each rank's corners begin among all of them, rank by rank; returns their sizes. */
+static int *measure(const struct deform_body *deform, const struct comm *comm, int n_corners,
+                    int *begin)
+{
+    int *sizes = array_allocate((size_t)comm->n_ranks, sizeof *sizes);
+    for (int v = 0; v < n_corners; v++)
+        sizes[deform->share.owner[deform->skin.nodes[v]]]++;
+    for (int q = 0, n = 0; q < comm->n_ranks; q++) {
+        begin[q] = n;
+        n += sizes[q];
+        sizes[q] *= (int)sizeof(struct vec3);
+    }
+    return sizes;
+}
+
+static void show(const struct deform_body *deform, const struct comm *comm, struct mesh *mesh)
+{
+    struct vec3 *places = array_allocate((size_t)mesh->n_corners, sizeof *places);
+    int *next = array_allocate((size_t)comm->n_ranks, sizeof *next);
+    int *sizes = measure(deform, comm, mesh->n_corners, next);
+    int own = next[comm->rank];
+    for (int v = 0; v < mesh->n_corners; v++)
+        if (deform->share.owner[deform->skin.nodes[v]] == comm->rank)
+            places[own++] = vec3_of(solid_place(&deform->solid, deform->skin.nodes[v]));
+    comm_gather_parts(comm, places, sizes);
+    for (int v = 0; v < mesh->n_corners; v++)
+        mesh->place[v] = places[next[deform->share.owner[deform->skin.nodes[v]]]++];
+    for (int v = mesh->n_corners; v < mesh->n_vertices; v++)
+        place_mean(mesh, v);
+    mesh_update(mesh);
+    free(places);
+    free(next);
+    free(sizes);
+}
+
+void deform_skin_show(struct simulation *sim)
+{
+    for (int k = 0; sim->comm->n_ranks > 1 && k < sim->deform.n; k++)
+        show(&sim->deform.list[k], sim->comm, &sim->bodies.list[sim->deform.list[k].body].mesh);
+}
+
+void deform_skin_hide(struct simulation *sim)
+{
+    for (int k = 0; sim->comm->n_ranks > 1 && k < sim->deform.n; k++) {
+        struct body *body = &sim->bodies.list[sim->deform.list[k].body];
+        place_nowhere(&body->mesh);
+        deform_skin_forget(&sim->deform.list[k].skin, &body->mesh);
+        deform_skin_place(&sim->deform.list[k], body);
+    }
+}

@@ -1,0 +1,41 @@
+/*
+ * The surface of a body that deforms, as far as this rank has it.  Its corners are nodes; here
+ * are those of the elements that this rank computes, and what spheres need (deform_share.h).
+ * All others are at no place (NaN): search does not find them, and what needed one all the same
+ * would fail at once.
+ */
+#ifndef TREMIE_RUN_DEFORM_SKIN_H
+#define TREMIE_RUN_DEFORM_SKIN_H
+
+struct body;
+struct deform_body;
+struct mesh;
+struct simulation;
+
+struct deform_skin {
+    int *nodes;                /* of each corner of the mesh */
+    int n_vertices, *vertices; /* here: corners, then mean points; ascending */
+    int n_corners;             /* of these */
+    int n_faces, *faces;       /* all of whose vertices are here, ascending */
+    unsigned char *is_here;    /* of each vertex */
+};
+
+/* Takes over the nodes; nothing is here yet. */
+void deform_skin_init(struct deform_skin *skin, int *nodes, const struct body *body);
+void deform_skin_clear(struct deform_skin *skin);
+
+/* Finds out what of the surface is here, and puts it where its nodes are.  Local. */
+void deform_skin_renew(struct deform_body *deform, struct body *body);
+/* Puts what is here where its nodes are, with their velocities, and takes all forces from it.
+ * Local. */
+void deform_skin_place(const struct deform_body *deform, struct body *body);
+/* Gives back memory of what is not here. */
+void deform_skin_forget(const struct deform_skin *skin, struct mesh *mesh);
+/* Speed of the fastest vertex that is moved here [m/s].  Local. */
+double deform_skin_speed(const struct deform_body *deform);
+
+/* All of all surfaces is here, without velocities, until deform_skin_hide().  Collective. */
+void deform_skin_show(struct simulation *sim);
+void deform_skin_hide(struct simulation *sim);
+
+#endif
