@@ -540,7 +540,7 @@ struct job {
             double every; /* [s]; a whole number of steps; 0: no snapshots */
             int fields;   /* bit k: enum snapshot_field SNAPSHOT_FIRST_CHOICE + k */
             bool contacts;
-            int solids;   /* bits likewise: of enum snapshot_node_field, then of elements' */
+            int solids; /* bits likewise: of enum snapshot_node_field, then of elements' */
             enum job_compress compress;
             enum job_precision precision;
         } snapshots;
