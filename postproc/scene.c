@@ -108,6 +108,21 @@ static void take_body(struct body *body, const struct snapshot_body *shown)
     free(facets);
 }
 
+/* The surface of a solid as a body's, with all of its nodes. */
+static void take_solid(struct body *body, const struct snapshot_solid *solid)
+{
+    const struct snapshot_rows *triangles = &solid->parts[SNAPSHOT_TRIANGLES];
+    struct snapshot_body shown = {.name = solid->name,
+                                  .n_points = solid->n_nodes,
+                                  .n_triangles = triangles->n,
+                                  .triangles = triangles->rows};
+    shown.points = array_allocate((size_t)solid->n_nodes, sizeof *shown.points);
+    for (int64_t i = 0; i < solid->n_nodes; i++)
+        snapshot_get(&solid->nodes, i, SNAPSHOT_NODE_POSITION, shown.points[i]);
+    take_body(body, &shown);
+    free(shown.points);
+}
+
 /* The job of the folder in whose snapshots/ the file lies, for names; without a word where
  * there is none. */
 static void find_job(struct scene *scene, const char *path)
@@ -143,10 +158,12 @@ static int read_snapshot(struct scene *scene, const char *path)
                                             .next_id = snapshot.next_id,
                                             .title = array_string(snapshot.title),
                                             .spheres = &scene->spheres};
-    scene->bodies.n = snapshot.n_bodies;
-    scene->bodies.list = array_allocate((size_t)snapshot.n_bodies, sizeof *scene->bodies.list);
+    scene->bodies.n = snapshot.n_bodies + snapshot.n_solids;
+    scene->bodies.list = array_allocate((size_t)scene->bodies.n, sizeof *scene->bodies.list);
     for (int b = 0; b < snapshot.n_bodies; b++)
         take_body(&scene->bodies.list[b], &snapshot.bodies[b]);
+    for (int s = 0; s < snapshot.n_solids; s++)
+        take_solid(&scene->bodies.list[snapshot.n_bodies + s], &snapshot.solids[s]);
     find_job(scene, path);
     snapshot_clear(&snapshot);
     return REPORT_FINISHED;

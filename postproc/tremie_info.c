@@ -160,6 +160,33 @@ static void print_scene(const struct scene *scene, bool listed)
                exact_sum_value(&checkpoint->monitors[k].sum));
 }
 
+static const char *unit_of(const struct field *field)
+{
+    return strcmp(field->unit, "1") == 0 ? "" : field->unit;
+}
+
+/* The greatest number of a column, where there is that. */
+static void print_most(const struct table *table, const char *name)
+{
+    const int column = snapshot_column(table, name);
+    double most = -INFINITY, value;
+    for (int64_t i = 0; column >= 0 && i < table->n; i++) {
+        snapshot_get(table, i, column, &value);
+        most = fmax(most, value);
+    }
+    if (column >= 0 && table->n > 0)
+        printf("  %-18sat most %.6g %s\n", name, most, unit_of(&table->columns[column].field));
+}
+
+static void print_solid(const struct snapshot_solid *solid)
+{
+    printf("solid %-13s %" PRId64 " elements, %" PRId64 " nodes of %s\n", solid->name,
+           solid->n_elements, solid->n_nodes, solid->material);
+    print_most(&solid->nodes, "contact_pressure");
+    print_most(&solid->elements, "von_mises");
+    print_most(&solid->elements, "plastic_strain");
+}
+
 static int show_snapshot(const char *path)
 {
     struct snapshot snapshot;
@@ -184,6 +211,8 @@ static int show_snapshot(const char *path)
             printf(", as at step %" PRId64, body->points_step);
         printf("\n");
     }
+    for (int s = 0; s < snapshot.n_solids; s++)
+        print_solid(&snapshot.solids[s]);
     snapshot_clear(&snapshot);
     return REPORT_FINISHED;
 }

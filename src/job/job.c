@@ -436,6 +436,8 @@ static void places_note(struct job *job, const struct yaml_tree_node *root)
         for (int k = 0; k < body->solid.n_boundary; k++)
             body->solid.boundary[k].place = place_of(job->path, root, list, k);
     }
+    for (int i = 0; i < job->output.n_probes; i++)
+        job->output.probes[i].place = place_of(job->path, root, "output.probes", i);
 }
 
 /* Fills the job from a complete tree and frees it again when there are mistakes. */

@@ -407,6 +407,16 @@ struct job_content {
     int by; /* set of enum job_split */
 };
 
+/* Where the series follow a deformable body; one of the four says where. */
+struct job_probe {
+    char *name;
+    char *body;
+    bool has_node, has_element;
+    struct vec3 node, element; /* the node, or middle of an element, nearest to it [m] */
+    char *nodes, *elements;    /* those of a set */
+    struct job_place place;
+};
+
 /* A region out of which spheres are taken whose centre is in it. */
 struct job_removal {
     char *name;
@@ -530,9 +540,12 @@ struct job {
             double every; /* [s]; a whole number of steps; 0: no snapshots */
             int fields;   /* bit k: enum snapshot_field SNAPSHOT_FIRST_CHOICE + k */
             bool contacts;
+            int solids; /* bits likewise: of enum snapshot_node_field, then of elements' */
             enum job_compress compress;
             enum job_precision precision;
         } snapshots;
+        int n_probes;
+        struct job_probe *probes;
     } output;
     struct {
         double overlap; /* largest overlap over radius that a run tolerates [-] */

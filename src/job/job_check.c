@@ -120,21 +120,50 @@ static void names_check(const struct check *check, const char *list, int n,
     free(names);
 }
 
-/* A content and a body that forces move have columns of the same kind in the series. */
-static void content_names_check(const struct check *check)
+/* A list whose elements begin with a name. */
+struct named_list {
+    const char *path;
+    int n;
+    const void *elements;
+    size_t size;
+};
+
+static const char *name_in(const struct named_list *list, int i)
+{
+    return *(char *const *)(const void *)((const char *)list->elements +
+                                          (size_t)i * list->size);
+}
+
+/* Lists names of one list that another one has too. */
+static void names_apart_check(const struct check *check, const struct named_list *list,
+                              const struct named_list *other)
+{
+    for (int i = 0; i < list->n; i++)
+        for (int k = 0; k < other->n; k++) {
+            const char *name = name_in(list, i), *theirs = name_in(other, k);
+            char path[64];
+            if (name == NULL || theirs == NULL || strcmp(name, theirs) != 0)
+                continue;
+            PATH("%s.%d.name", list->path, i);
+            mistake(check, path, "is '%s' like that of %s.%d; a name of its own is expected",
+                    name, other->path, k);
+        }
+}
+
+/* What has columns of the same kind in the series: contents, bodies that forces move,
+ * probes. */
+static void columns_check(const struct check *check)
 {
     const struct job *job = check->job;
-    for (int c = 0; c < job->n_contents; c++)
-        for (int b = 0; b < job->n_bodies; b++) {
-            const char *content = job->contents[c].name, *body = job->bodies[b].name;
-            char path[64];
-            if (content == NULL || body == NULL || strcmp(content, body) != 0)
-                continue;
-            PATH("contents.%d.name", c);
-            mistake(check, path,
-                    "is '%s' like that of bodies.%d; a name of its own is expected", content,
-                    b);
-        }
+    const struct named_list bodies = {"bodies", job->n_bodies, job->bodies,
+                                      sizeof *job->bodies};
+    const struct named_list contents = {"contents", job->n_contents, job->contents,
+                                        sizeof *job->contents};
+    const struct named_list probes = {"output.probes", job->output.n_probes, job->output.probes,
+                                      sizeof *job->output.probes};
+    names_apart_check(check, &contents, &bodies);
+    names_apart_check(check, &probes, &bodies);
+    names_apart_check(check, &probes, &contents);
 }
 
 /* ------------------------------------------------------------------------------- CSV files */
@@ -975,6 +1004,43 @@ static void contents_check(const struct check *check)
     }
 }
 
+/* The deformable body of this name; NULL: there is none. */
+static const struct job_body *solid_find(const struct job *job, const char *name)
+{
+    for (int b = 0; b < job->n_bodies; b++)
+        if (job->bodies[b].model == JOB_MODEL_SOLID && job->bodies[b].name != NULL &&
+            strcmp(job->bodies[b].name, name) == 0)
+            return &job->bodies[b];
+    return NULL;
+}
+
+/* Sets are looked for when the mesh is known. */
+static void probes_check(const struct check *check)
+{
+    for (int i = 0; i < check->job->output.n_probes; i++) {
+        const struct job_probe *probe = &check->job->output.probes[i];
+        char path[64];
+        PATH("output.probes.%d.", i);
+        if (!is_clean(check, path))
+            continue;
+        PATH("output.probes.%d", i);
+        if (probe->has_node + probe->has_element + (probe->nodes != NULL) +
+                (probe->elements != NULL) !=
+            1)
+            mistake(check, path, "has %s; one of node, nodes, element, elements is expected",
+                    probe->has_node || probe->has_element || probe->nodes != NULL ||
+                            probe->elements != NULL
+                        ? "several places"
+                        : "no place");
+        PATH("output.probes.%d.body", i);
+        if (solid_find(check->job, probe->body) == NULL)
+            mistake(check, path,
+                    "names '%s', which is no body with model solid; the name of one is "
+                    "expected",
+                    probe->body);
+    }
+}
+
 static void sections_check(const struct check *check)
 {
     for (int i = 0; i < check->job->n_sections; i++) {
@@ -1116,7 +1182,9 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     names_check(&check, "bodies", job->n_bodies, job->bodies, sizeof *job->bodies);
     names_check(&check, "sections", job->n_sections, job->sections, sizeof *job->sections);
     names_check(&check, "contents", job->n_contents, job->contents, sizeof *job->contents);
-    content_names_check(&check);
+    columns_check(&check);
+    names_check(&check, "output.probes", job->output.n_probes, job->output.probes,
+                sizeof *job->output.probes);
     names_check(&check, "insert", job->n_insertions, job->insertions, sizeof *job->insertions);
     names_check(&check, "remove", job->n_removals, job->removals, sizeof *job->removals);
     materials_check(&check);
@@ -1129,6 +1197,7 @@ void job_check(const struct job *job, const struct yaml_tree_node *root, bool re
     insertions_check(&check, falling);
     removals_check(&check);
     contents_check(&check);
+    probes_check(&check);
     sections_check(&check);
     gravity_check(&check);
     for (int r = 0; r < job->n_damping_regions; r++) {

@@ -65,6 +65,10 @@ static const char *const directions[] = {"x", "y", "z", NULL};
 static const char *const leavers[] = {"stop", "remove", "ignore", NULL};
 static const char *const weights[] = {"contacts", "candidates", NULL};
 /* In the order of enum snapshot_field. */
+static const char *const solid_fields[] = {
+    "displacement", "velocity",  "contact_force",    "contact_pressure",
+    "stress",       "von_mises", "principal_stress", "plastic_strain",
+    "alive",        NULL};
 static const char *const snapshot_fields[] = {"velocity",
                                               "angular_velocity",
                                               "force",
@@ -686,8 +690,8 @@ static const struct schema_key set_keys[] = {
     {"name", SCHEMA_NAME, "name of the set, that no other set of the body has",
      .required = true, AT(struct job_set, name)},
     {"region", SCHEMA_GROUP,
-     "nodes that lie in it at time 0, its border included, and the sides of elements on the "
-     "surface all of whose nodes do; a box, cylinder or sphere",
+     "nodes that lie in it at time 0, its border included, the elements all of whose nodes do, and "
+     "likewise the sides of elements on the surface; a box, cylinder or sphere",
      .required = true, REGION_AT(struct job_set, region, region.given)},
     END};
 
@@ -1059,13 +1063,42 @@ static const struct schema_key snapshots_keys[] = {
      .choices = snapshot_fields, AT(struct job, output.snapshots.fields)},
     {"contacts", SCHEMA_FLAG, "place and force of each contact between spheres as well",
      .standard = "false", AT(struct job, output.snapshots.contacts)},
+    {"solids", SCHEMA_CHOICES,
+     "what is kept of each deformable body besides its places; of nodes: displacement, velocity, "
+     "contact_force and contact_pressure, of that instant; of elements: the others",
+     .standard = "[displacement, velocity, contact_force, contact_pressure, stress, von_mises, "
+                 "principal_stress, plastic_strain, alive]",
+     .choices = solid_fields, AT(struct job, output.snapshots.solids)},
     {"compress", SCHEMA_CHOICE,
      "whether numbers are packed, which loses nothing, takes about half the space and several "
      "times as long to write",
      .standard = "none", .choices = compressions, AT(struct job, output.snapshots.compress)},
     {"precision", SCHEMA_CHOICE,
-     "numbers of spheres and contacts as they are, or rounded to 7 digits in half the space",
+     "numbers of spheres, contacts and deformable bodies as they are, or rounded to 7 digits in half the space",
      .standard = "double", .choices = precisions, AT(struct job, output.snapshots.precision)},
+    END};
+
+static const struct schema_key probe_keys[] = {
+    {"name", SCHEMA_NAME, "name of the probe, used once", .required = true,
+     AT(struct job_probe, name)},
+    {"body", SCHEMA_NAME, "a body with model solid", .required = true,
+     AT(struct job_probe, body)},
+    {"node", SCHEMA_NUMBER,
+     "its displacement and velocity: of the node that at the start is nearest to this point; a "
+     "probe has one of node, nodes, element, elements",
+     .unit = "m", BETWEEN(-FAR, FAR), GIVEN(struct job_probe, has_node),
+     AT(struct job_probe, node)},
+    {"nodes", SCHEMA_TEXT, "their means over the nodes of this set of the body",
+     GIVEN(struct job_probe, nodes), AT(struct job_probe, nodes)},
+    {"element", SCHEMA_NUMBER,
+     "its stress, von Mises's stress and plastic strain: of the element whose middle is nearest to "
+     "this point at the start",
+     .unit = "m", BETWEEN(-FAR, FAR), GIVEN(struct job_probe, has_element),
+     AT(struct job_probe, element)},
+    {"elements", SCHEMA_TEXT,
+     "their means, weighted by mass, and the greatest of the last two, over the elements of this "
+     "set of the body",
+     GIVEN(struct job_probe, elements), AT(struct job_probe, elements)},
     END};
 
 static const struct schema_key output_keys[] = {
@@ -1075,6 +1108,9 @@ static const struct schema_key output_keys[] = {
      "spheres and bodies at regular times in RUN/snapshots/, for ParaView and other tools; none "
      "when left out",
      .inside = snapshots_keys, GIVEN(struct job, output.snapshots.every)},
+    {"probes", SCHEMA_LIST, "nodes and elements of deformable bodies that the series follow",
+     UP_TO(1000.0), .inside = probe_keys, GIVEN(struct job, output.n_probes),
+     LIST_AT(struct job, output.probes, output.n_probes)},
     END};
 
 static const struct schema_key watch_keys[] = {

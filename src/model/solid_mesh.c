@@ -296,6 +296,14 @@ static double width_of(const struct solid_mesh *mesh)
     return most;
 }
 
+static bool all_inside(int n, const int *nodes, const bool *inside)
+{
+    for (int c = 0; c < n; c++)
+        if (!inside[nodes[c]])
+            return false;
+    return true;
+}
+
 static void add_region(struct solid_mesh *mesh, const struct job_set *asked, int n,
                        const struct solid_mesh_side *surface)
 {
@@ -312,20 +320,21 @@ static void add_region(struct solid_mesh *mesh, const struct job_set *asked, int
     }
     for (int k = 0; k < n; k++) {
         int corners[4];
-        bool all = true;
         const int m =
             solid_mesh_side_nodes(mesh->elements[surface[k].element], surface[k].side, corners);
-        for (int c = 0; c < m; c++)
-            all = all && inside[corners[c]];
-        if (all)
+        if (all_inside(m, corners, inside))
             solid_mesh_list_add(&sides,
                                 SOLID_MESH_SIDES * surface[k].element + surface[k].side);
     }
+    for (int e = 0; e < mesh->n_elements; e++)
+        if (all_inside(solid_mesh_n_corners(mesh->elements[e]), mesh->elements[e], inside))
+            solid_mesh_list_add(&elements, e);
     region_clear(&region);
     solid_mesh_add_set(mesh, asked->name, &nodes, &sides, &elements);
     free(inside);
     free(nodes.items);
     free(sides.items);
+    free(elements.items);
 }
 
 /* ----------------------------------------------------------------------------------- files */

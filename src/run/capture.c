@@ -11,6 +11,7 @@
 #include "base/array.h"
 #include "base/report.h"
 #include "job/job.h"
+#include "run/deform_capture.h"
 #include "run/simulation.h"
 #include "store/file.h"
 #include "store/run_folder.h"
@@ -158,7 +159,7 @@ static void add_body(const struct simulation *sim, const struct body *body,
                      struct snapshot_body *shown)
 {
     const struct mesh *mesh = &body->mesh;
-    const size_t n_facets = (size_t)(mesh->n_faces + mesh->n_skin);
+    const size_t n_facets = (size_t)mesh->n_faces;
     *shown = (struct snapshot_body){
         .name = array_string(body->name),
         .material = array_string(sim->job->materials[body->material].name),
@@ -172,8 +173,6 @@ static void add_body(const struct simulation *sim, const struct body *body,
     shown->triangles = array_allocate(2 * n_facets, sizeof *shown->triangles);
     for (int f = 0; f < mesh->n_faces; f++)
         add_facet(shown, mesh->faces[f].n, mesh->faces[f].vertices);
-    for (int f = 0; f < mesh->n_skin; f++)
-        add_facet(shown, mesh->skin[f][3] < 0 ? 3 : 4, mesh->skin[f]);
 }
 
 static void add_bodies(const struct simulation *sim, struct snapshot *snapshot)
@@ -182,18 +181,11 @@ static void add_bodies(const struct simulation *sim, struct snapshot *snapshot)
         return;
     snapshot->bodies = array_allocate((size_t)sim->bodies.n, sizeof *snapshot->bodies);
     for (int b = 0; b < sim->bodies.n; b++)
-        if (sim->bodies.list[b].exists)
+        if (sim->bodies.list[b].exists && sim->bodies.list[b].skin == NULL)
             add_body(sim, &sim->bodies.list[b], &snapshot->bodies[snapshot->n_bodies++]);
 }
 
 /* ----------------------------------------------------------------------------------- whole */
-
-static char *add_line(char *lines, const char *name)
-{
-    char *longer = array_format("%s%s\n", lines, name);
-    free(lines);
-    return longer;
-}
 
 void capture_take(struct simulation *sim)
 {
@@ -213,18 +205,17 @@ void capture_take(struct simulation *sim)
     snapshot->materials = array_string("");
     snapshot->groups = array_string("");
     for (int m = 0; m < job->n_materials; m++)
-        snapshot->materials = add_line(snapshot->materials, job->materials[m].name);
+        snapshot->materials = snapshot_add_name(snapshot->materials, job->materials[m].name);
     for (int g = 0; g < job_n_groups(job); g++)
-        snapshot->groups = add_line(snapshot->groups, job_group_name(job, g));
+        snapshot->groups = snapshot_add_name(snapshot->groups, job_group_name(job, g));
     add_spheres(sim, &snapshot->spheres);
     table_arrange(&snapshot->spheres, sim->comm, sim->next_id);
     if (snapshot->has_contacts) {
         add_contacts(sim, &snapshot->contacts);
         table_arrange(&snapshot->contacts, sim->comm, sim->next_id);
     }
-    deform_skin_show(sim);
     add_bodies(sim, snapshot);
-    deform_skin_hide(sim);
+    deform_capture(sim, snapshot);
     capture->waits = true;
 }
 

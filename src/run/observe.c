@@ -11,6 +11,7 @@
 #include "job/job.h"
 #include "model/rigid.h"
 #include "physics/contact_law.h"
+#include "run/reactions.h"
 #include "run/simulation.h"
 
 /* Energies of one instant, in the order of the table's columns. */
@@ -129,6 +130,8 @@ void observe_init(struct observe *observe, const struct simulation *sim)
         if (sim->bodies.list[b].rigid != NULL)
             add_forced_columns(table, &sim->bodies.list[b]);
     }
+    reactions_add_columns(sim, table);
+    probes_add_columns(&sim->probes, table);
     for (int s = 0; s < sim->sections.n; s++) {
         const char *name = sim->sections.list[s].name;
         const struct tally *passed = sim->sections.counts[s].passed;
@@ -524,7 +527,10 @@ void observe_sample(struct simulation *sim)
     row[n++] = (double)counts[1];
     row[n++] = (double)counts[2];
     const double last = total_of(sim, &observe->totals[OBSERVE_LAST_STEP]);
-    n = add_body_values(sim, row, n, (double)(sim->step + 1) - last);
+    const double n_steps = (double)(sim->step + 1) - last;
+    n = add_body_values(sim, row, n, n_steps);
+    n = reactions_values(sim, n_steps, row, n);
+    n = probes_values(sim, row, n);
     n = add_section_values(sim, row, n);
     n = add_content_values(sim, row, n);
     n = add_exchange_values(sim, row, n);
@@ -625,6 +631,22 @@ static void add_tally(struct observe_monitor **monitors, int *n, int *capacity,
     }
 }
 
+/* What the supports of a body that deforms have done. */
+static void add_supports(struct observe_monitor **monitors, int *n, int *capacity,
+                         struct deform_body *deform)
+{
+    static const char *const forces[] = {"force_x", "force_y", "force_z"};
+    for (int s = 0; s < deform->solid.supports.n; s++) {
+        struct solid_support *support = &deform->solid.supports.list[s];
+        char owner[48];
+        snprintf(owner, sizeof owner, "body_%d.support_%d", deform->body, s);
+        add_monitor(monitors, n, capacity, &support->force[support->direction], owner,
+                    forces[support->direction]);
+        if (support->kind != SOLID_SUPPORT_FIXED)
+            add_monitor(monitors, n, capacity, &support->work, owner, "work");
+    }
+}
+
 int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
 {
     static const char *const totals[OBSERVE_N_TOTALS] = {
@@ -648,6 +670,8 @@ int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
         add_monitor(monitors, &n, &capacity, &load->work, owner, "work");
         add_monitor(monitors, &n, &capacity, &load->wound, owner, "wound");
     }
+    for (int k = 0; k < sim->deform.n; k++)
+        add_supports(monitors, &n, &capacity, &sim->deform.list[k]);
     for (int s = 0; s < sim->sections.n; s++) {
         const struct tally *passed = sim->sections.counts[s].passed;
         char owner[32];

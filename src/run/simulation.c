@@ -89,6 +89,7 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     sim->gravity_varies = gravity_varies(job);
     forced_init(&sim->forced, sim);
     deform_init(&sim->deform, sim, isa);
+    probes_init(&sim->probes, sim);
     local_damping_init(&sim->local_damping, sim);
     spheres_init(&sim->spheres);
     periodic_init(&sim->spheres.periodic, job);
@@ -340,6 +341,7 @@ void simulation_destroy(struct simulation *sim)
     halo_clear(&sim->halo);
     migrate_clear(&sim->migrate);
     forced_clear(&sim->forced);
+    probes_clear(&sim->probes);
     deform_clear(&sim->deform, sim->comm);
     local_damping_clear(&sim->local_damping);
     sections_clear(&sim->sections);

@@ -27,6 +27,7 @@
 #include "run/insertion.h"
 #include "run/local_damping.h"
 #include "run/observe.h"
+#include "run/probes.h"
 #include "run/removal.h"
 #include "run/runtime.h"
 #include "run/sections.h"
@@ -83,6 +84,7 @@ struct simulation {
     bool gravity_varies;
     struct forced forced;
     struct deform deform;
+    struct probes probes;
     struct local_damping local_damping;
     struct sections sections;
     struct contents contents;

@@ -88,20 +88,19 @@ static void check_sets(const struct survey *survey)
     }
 }
 
-/* There is no such set: which are there? */
-static void refuse_set(const struct survey *survey, int k)
+/* There is no such set: which are there?  `path` is the key's. */
+static void refuse_set(const struct survey *survey, const char *path, const char *name,
+                       struct job_place place)
 {
     const struct solid_mesh *mesh = survey->mesh;
-    const struct job_boundary *asked = &survey->body->solid.boundary[k];
     const char **names = array_allocate((size_t)mesh->n_sets, sizeof *names);
     char all[TEXT];
     for (int j = 0; j < mesh->n_sets; j++)
         names[j] = mesh->sets[j].name;
-    const char *near = schema_suggestion(asked->set, names, mesh->n_sets);
+    const char *near = schema_suggestion(name, names, mesh->n_sets);
     list_names(all, sizeof all, names, mesh->n_sets);
-    FIND(survey, asked->place,
-         "bodies.%d.boundary.%d.set: there is no set '%s'; %s%s is expected", survey->b, k,
-         asked->set, near != NULL ? "" : "one of ", near != NULL ? near : all);
+    FIND(survey, place, "%s: there is no set '%s'; %s%s is expected", path, name,
+         near != NULL ? "" : "one of ", near != NULL ? near : all);
     free(names);
 }
 
@@ -167,6 +166,23 @@ static void check_conflicts(const struct survey *survey)
     free(holders);
 }
 
+/* A probe's set must be there and hold what the probe follows. */
+static void check_probe(const struct survey *survey, int k)
+{
+    const struct job_probe *probe = &survey->job->output.probes[k];
+    const char *name = probe->nodes != NULL ? probe->nodes : probe->elements;
+    char path[PATH];
+    if (name == NULL || strcmp(probe->body, survey->body->name) != 0)
+        return;
+    const struct solid_mesh_set *set = solid_mesh_find(survey->mesh, name);
+    snprintf(path, sizeof path, "output.probes.%d.%s", k,
+             probe->nodes != NULL ? "nodes" : "elements");
+    if (set == NULL)
+        refuse_set(survey, path, name, probe->place);
+    else if ((probe->nodes != NULL ? set->n_nodes : set->n_elements) == 0)
+        FIND(survey, probe->place, "%s: set '%s' has none; some are expected", path, name);
+}
+
 static void check_body(const struct job *job, int b, struct mistakes *mistakes)
 {
     const struct job_body *body = &job->bodies[b];
@@ -188,12 +204,17 @@ static void check_body(const struct job *job, int b, struct mistakes *mistakes)
                         file ? nowhere : body->place, mistakes);
     check_sets(&survey);
     for (int k = 0; k < solid->n_boundary; k++) {
-        const struct solid_mesh_set *set = solid_mesh_find(&mesh, solid->boundary[k].set);
+        const struct job_boundary *asked = &solid->boundary[k];
+        const struct solid_mesh_set *set = solid_mesh_find(&mesh, asked->set);
+        char path[PATH];
+        snprintf(path, sizeof path, "bodies.%d.boundary.%d.set", b, k);
         if (set == NULL)
-            refuse_set(&survey, k);
+            refuse_set(&survey, path, asked->set, asked->place);
         else
             check_set(&survey, k, set);
     }
+    for (int k = 0; k < job->output.n_probes; k++)
+        check_probe(&survey, k);
     check_conflicts(&survey);
     solid_mesh_clear(&mesh);
 }

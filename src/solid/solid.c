@@ -499,6 +499,14 @@ void solid_power(const struct solid *solid, int i, const struct solid_advance *a
     }
 }
 
+void solid_velocity_now(const struct solid *solid, int i, double dt, double v[3])
+{
+    const struct solid_advance advance = solid_advance(solid, i, dt);
+    const double *before = solid_velocity(solid, i);
+    for (int k = 0; k < 3; k++)
+        v[k] = 0.5 * (before[k] + advance.velocity[k]);
+}
+
 /* Work of a step's forces over the half step before and the one behind it.  (12.14) */
 static void count_work(struct solid *solid, int i, const struct solid_advance *advance,
                        int64_t step, double dt)
@@ -511,6 +519,7 @@ static void count_work(struct solid *solid, int i, const struct solid_advance *a
     solid_power(solid, i, advance, v, power);
     for (int w = 0; w < SOLID_N_WORKS; w++)
         solid->work[i][w] += power[w] * dt;
+    solid_supports_book(&solid->supports, i, advance->support, v, dt);
 }
 
 void solid_move(struct solid *solid, int64_t step, double dt)

@@ -175,6 +175,8 @@ struct solid_advance {
 };
 /* `supports` for the step: solid_supports_set(). */
 struct solid_advance solid_advance(const struct solid *solid, int i, double dt);
+/* Velocity at the step, between those of the half steps [m/s]. */
+void solid_velocity_now(const struct solid *solid, int i, double dt, double v[3]);
 /* Power of what works on a node that moves at v, of each enum solid_work [W]. */
 void solid_power(const struct solid *solid, int i, const struct solid_advance *advance,
                  const double v[3], double power[SOLID_N_WORKS]);

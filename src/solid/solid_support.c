@@ -39,7 +39,7 @@ void solid_supports_add(struct solid_supports *supports, enum solid_support_kind
                         const int *nodes)
 {
     CHECK(direction >= 0 && direction < 3, "there is no direction %d", direction);
-    struct solid_support support = {.kind = kind};
+    struct solid_support support = {.kind = kind, .direction = direction};
     if (kind != SOLID_SUPPORT_FIXED)
         support.table = solid_table_copy(table);
     append(supports, &support);
@@ -108,5 +108,19 @@ void solid_supports_place(const struct solid_supports *supports, int node,
         } else {
             place[k] = reference[k] + support->shift;
         }
+    }
+}
+
+void solid_supports_book(struct solid_supports *supports, int node, const double force[3],
+                         const double v[3], double dt)
+{
+    const int *held = supports->of_node[node];
+    for (int k = 0; k < 3; k++) {
+        if (held[k] < 0)
+            continue;
+        struct solid_support *support = &supports->list[held[k]];
+        exact_sum_add(&support->force[k], force[k]);
+        if (support->kind != SOLID_SUPPORT_FIXED)
+            exact_sum_add(&support->work, force[k] * v[k] * dt);
     }
 }

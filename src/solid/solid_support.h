@@ -9,6 +9,7 @@
 
 #include <stdint.h>
 
+#include "base/exact_sum.h"
 #include "solid/solid_table.h"
 
 struct job_motion;
@@ -23,12 +24,16 @@ enum solid_support_kind {
 
 struct solid_support {
     enum solid_support_kind kind;
+    int direction; /* 0 to 2; of motions, which take all, 0 */
     struct solid_table table;
     int n_motions;
     const struct job_motion *motions; /* of the caller, who keeps them */
     /* At the step that solid_supports_set() was given: */
     double shift;                /* [m] */
     struct motion_place *places; /* of each motion */
+    /* What it has done so far; shares of this rank, its user may set them back. */
+    struct exact_sum force[3]; /* on nodes, summed over steps [N] */
+    struct exact_sum work;     /* up to the middle of the last move [J] */
 };
 
 struct solid_supports {
@@ -55,5 +60,8 @@ void solid_supports_set(struct solid_supports *supports, int64_t step, double dt
 /* Where that puts a node, in the directions in which it is held; others are left. */
 void solid_supports_place(const struct solid_supports *supports, int node,
                           const double reference[3], double place[3]);
+/* Books a step's force on a node that moves at v. */
+void solid_supports_book(struct solid_supports *supports, int node, const double force[3],
+                         const double v[3], double dt);
 
 #endif

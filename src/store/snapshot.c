@@ -45,6 +45,36 @@ const struct field snapshot_fields[SNAPSHOT_N_FIELDS] = {
                                      FIELD_DOUBLE, 1, 0},
 };
 
+const struct field snapshot_node_fields[SNAPSHOT_N_NODE_FIELDS] = {
+    [SNAPSHOT_NODE_ID] = {"id", "1", "number of the node, from 0", FIELD_INT64, 1, 0},
+    [SNAPSHOT_NODE_POSITION] = {"position", "m", "place", FIELD_DOUBLE, 3, 0},
+    [SNAPSHOT_NODE_DISPLACEMENT] = {"displacement", "m", "way from the place at the start",
+                                    FIELD_DOUBLE, 3, 0},
+    [SNAPSHOT_NODE_VELOCITY] = {"velocity", "m/s", "velocity", FIELD_DOUBLE, 3, 0},
+    [SNAPSHOT_NODE_CONTACT_FORCE] = {"contact_force", "N",
+                                     "of the contacts of this instant on the node",
+                                     FIELD_DOUBLE, 3, 0},
+    [SNAPSHOT_NODE_CONTACT_PRESSURE] = {"contact_pressure", "Pa",
+                                        "the contact force against the surface over the "
+                                        "node's share of the area",
+                                        FIELD_DOUBLE, 1, 0},
+};
+
+const struct field snapshot_element_fields[SNAPSHOT_N_ELEMENT_FIELDS] = {
+    [SNAPSHOT_ELEMENT_ID] = {"id", "1", "number of the element, from 0", FIELD_INT64, 1, 0},
+    [SNAPSHOT_ELEMENT_STRESS] = {"stress", "Pa", "Cauchy's, xx yy zz xy yz zx", FIELD_DOUBLE, 6,
+                                 0},
+    [SNAPSHOT_ELEMENT_VON_MISES] = {"von_mises", "Pa", "von Mises's equivalent stress",
+                                    FIELD_DOUBLE, 1, 0},
+    [SNAPSHOT_ELEMENT_PRINCIPAL_STRESS] = {"principal_stress", "Pa",
+                                           "principal stresses, the greatest first",
+                                           FIELD_DOUBLE, 3, 0},
+    [SNAPSHOT_ELEMENT_PLASTIC_STRAIN] = {"plastic_strain", "1", "equivalent plastic strain",
+                                         FIELD_DOUBLE, 1, 0},
+    [SNAPSHOT_ELEMENT_ALIVE] = {"alive", "1", "1: it resists; 0: it has failed", FIELD_INT32, 1,
+                                0},
+};
+
 static const struct field contact_fields[SNAPSHOT_N_CONTACT_FIELDS] = {
     [SNAPSHOT_FIRST_ID] = {"first_id", "1", "sphere of the lower id", FIELD_INT64, 1, 0},
     [SNAPSHOT_SECOND_ID] = {"second_id", "1", "sphere of the higher id", FIELD_INT64, 1, 0},
@@ -60,6 +90,17 @@ static const struct field POINTS = {"points",     "m", "vertices of the body's s
                                     FIELD_DOUBLE, 3,   0};
 static const struct field TRIANGLES = {"triangles", "1", "numbers of their points, from 0",
                                        FIELD_INT32, 3,   0};
+
+static const struct field PARTS[SNAPSHOT_N_PARTS] = {
+    [SNAPSHOT_REFERENCE] = {"reference", "m", "places of the nodes at the start", FIELD_DOUBLE,
+                            3, 0},
+    [SNAPSHOT_CORNERS] = {"corners", "1", "nodes of each element, from 0", FIELD_INT32, 8, 0},
+    [SNAPSHOT_TRIANGLES] = {"triangles", "1", "nodes of each triangle of the surface, from 0",
+                            FIELD_INT32, 3, 0},
+    [SNAPSHOT_CELLS] = {"cells", "1",
+                        "of each element 9 (hexahedron) or 6 (tetrahedron), then its nodes",
+                        FIELD_INT32, 1, 0},
+};
 
 /* ---------------------------------------------------------------------------------- content */
 
@@ -92,6 +133,15 @@ static void add_column(struct table *table, struct field field, bool single)
     table->record_size += field_size(&field);
 }
 
+/* Adds columns of the fields before `first`, and of others that bits name. */
+static void add_columns(struct table *table, const struct field *fields, int n, int first,
+                        int chosen, bool single)
+{
+    for (int f = 0; f < n; f++)
+        if (f < first || (chosen >> (f - first) & 1) != 0)
+            add_column(table, fields[f], single);
+}
+
 static void tables_init(struct snapshot *snapshot)
 {
     table_init(&snapshot->spheres, "spheres", 0, compare_spheres);
@@ -103,16 +153,58 @@ void snapshot_init(struct snapshot *snapshot, int fields, bool contacts, bool si
 {
     *snapshot = (struct snapshot){.has_contacts = contacts};
     tables_init(snapshot);
-    for (int f = 0; f < SNAPSHOT_N_FIELDS; f++)
-        if (f < SNAPSHOT_FIRST_CHOICE || (fields >> (f - SNAPSHOT_FIRST_CHOICE) & 1) != 0)
-            add_column(&snapshot->spheres, snapshot_fields[f], single);
+    add_columns(&snapshot->spheres, snapshot_fields, SNAPSHOT_N_FIELDS, SNAPSHOT_FIRST_CHOICE,
+                fields, single);
     for (int f = 0; f < SNAPSHOT_N_CONTACT_FIELDS && contacts; f++)
         add_column(&snapshot->contacts, contact_fields[f], single);
     snapshot->spheres.packed = snapshot->contacts.packed = packed;
 }
 
+static struct snapshot_solid *append_solid(struct snapshot *snapshot, const char *name)
+{
+    const size_t n = (size_t)snapshot->n_solids++;
+    snapshot->solids = array_resize(snapshot->solids, n, n + 1, sizeof *snapshot->solids);
+    struct snapshot_solid *solid = &snapshot->solids[n];
+    *solid = (struct snapshot_solid){.name = array_string(name)};
+    solid->names[0] = array_format("solids/%s/nodes", name);
+    solid->names[1] = array_format("solids/%s/elements", name);
+    table_init(&solid->nodes, solid->names[0], 0, compare_spheres);
+    table_init(&solid->elements, solid->names[1], 0, compare_spheres);
+    for (int p = 0; p < SNAPSHOT_N_PARTS; p++)
+        solid->parts[p].width = PARTS[p].width;
+    return solid;
+}
+
+struct snapshot_solid *snapshot_add_solid(struct snapshot *snapshot, const char *name,
+                                          int fields, bool single, bool packed)
+{
+    enum { N_NODE_CHOICES = SNAPSHOT_N_NODE_FIELDS - SNAPSHOT_NODE_FIRST_CHOICE };
+    struct snapshot_solid *solid = append_solid(snapshot, name);
+    add_columns(&solid->nodes, snapshot_node_fields, SNAPSHOT_N_NODE_FIELDS,
+                SNAPSHOT_NODE_FIRST_CHOICE, fields, single);
+    add_columns(&solid->elements, snapshot_element_fields, SNAPSHOT_N_ELEMENT_FIELDS,
+                SNAPSHOT_ELEMENT_FIRST_CHOICE, fields >> N_NODE_CHOICES, single);
+    solid->nodes.packed = solid->elements.packed = packed;
+    return solid;
+}
+
+static void solid_clear(struct snapshot_solid *solid)
+{
+    free(solid->name);
+    free(solid->material);
+    table_clear(&solid->nodes);
+    table_clear(&solid->elements);
+    free(solid->names[0]);
+    free(solid->names[1]);
+    for (int p = 0; p < SNAPSHOT_N_PARTS; p++)
+        free(solid->parts[p].rows);
+}
+
 void snapshot_clear(struct snapshot *snapshot)
 {
+    for (int s = 0; s < snapshot->n_solids; s++)
+        solid_clear(&snapshot->solids[s]);
+    free(snapshot->solids);
     for (int b = 0; b < snapshot->n_bodies; b++) {
         free(snapshot->bodies[b].name);
         free(snapshot->bodies[b].material);
@@ -126,6 +218,13 @@ void snapshot_clear(struct snapshot *snapshot)
     table_clear(&snapshot->spheres);
     table_clear(&snapshot->contacts);
     *snapshot = (struct snapshot){0};
+}
+
+char *snapshot_add_name(char *names, const char *name)
+{
+    char *longer = array_format("%s%s\n", names, name);
+    free(names);
+    return longer;
 }
 
 static unsigned char *place_of(const struct table *table, int64_t i, int column)
@@ -207,6 +306,19 @@ static int64_t step_of(struct h5 *before, const struct snapshot *snapshot, const
     return before->why == NULL && step >= 0 && step < snapshot->step ? step : snapshot->step;
 }
 
+/* A part of a solid's mesh as it is. */
+static struct field part_field(const struct snapshot_solid *solid, int part)
+{
+    struct field field = PARTS[part];
+    field.width = solid->parts[part].width;
+    return field;
+}
+
+static bool has_part(const struct snapshot_solid *solid, int part)
+{
+    return part != SNAPSHOT_CELLS || solid->mixed;
+}
+
 /* The newest snapshot before this one; NULL when there is none. */
 static char *find_before(const char *folder, int64_t step)
 {
@@ -217,6 +329,19 @@ static char *find_before(const char *folder, int64_t step)
     char *path = n > 0 ? file_step_path(folder, steps[n - 1]) : NULL;
     free(steps);
     return path;
+}
+
+static void find_parts(struct h5 *before, const struct snapshot *snapshot,
+                       struct snapshot_solid *solid)
+{
+    char *group = array_format("/solids/%s", solid->name);
+    for (int p = 0; p < SNAPSHOT_N_PARTS; p++) {
+        struct snapshot_rows *part = &solid->parts[p];
+        const struct field field = part_field(solid, p);
+        if (has_part(solid, p))
+            part->step = step_of(before, snapshot, group, &field, part->n, part->rows);
+    }
+    free(group);
 }
 
 static void find_meshes(const char *folder, struct snapshot *snapshot)
@@ -236,6 +361,12 @@ static void find_meshes(const char *folder, struct snapshot *snapshot)
         body->triangles_step =
             step_of(&before, snapshot, group, &TRIANGLES, body->n_triangles, body->triangles);
         free(group);
+    }
+    for (int s = 0; s < snapshot->n_solids; s++) {
+        for (int p = 0; p < SNAPSHOT_N_PARTS; p++)
+            snapshot->solids[s].parts[p].step = snapshot->step;
+        if (path != NULL)
+            find_parts(&before, snapshot, &snapshot->solids[s]);
     }
     h5_close(&before);
     free(before.why);
@@ -266,6 +397,7 @@ static void put_run(struct h5 *h5, const struct snapshot *snapshot)
     h5_put_int(h5, run, "n_spheres", snapshot->spheres.n_total);
     h5_put_int(h5, run, "n_contacts", snapshot->contacts.n_total);
     h5_put_int(h5, run, "n_bodies", snapshot->n_bodies);
+    h5_put_int(h5, run, "n_solids", snapshot->n_solids);
     h5_put_text(h5, run, "title", snapshot->title);
 }
 
@@ -305,19 +437,43 @@ static void put_body(struct h5 *h5, const struct snapshot *snapshot,
     free(group);
 }
 
-static char *body_names(const struct snapshot *snapshot)
+static void put_solid(struct h5 *h5, const struct snapshot *snapshot,
+                      const struct snapshot_solid *solid)
 {
-    size_t size = 1;
-    for (int b = 0; b < snapshot->n_bodies; b++)
-        size += strlen(snapshot->bodies[b].name) + 1;
-    char *names = array_allocate(size, 1), *at = names;
-    for (int b = 0; b < snapshot->n_bodies; b++) {
-        const size_t length = strlen(snapshot->bodies[b].name);
-        memcpy(at, snapshot->bodies[b].name, length);
-        at[length] = '\n';
-        at += length + 1;
+    char *group = array_format("/solids/%s", solid->name);
+    h5_put_text(h5, group, "material", solid->material);
+    for (int p = 0; p < SNAPSHOT_N_PARTS; p++) {
+        const struct snapshot_rows *part = &solid->parts[p];
+        const struct field field = part_field(solid, p);
+        if (has_part(solid, p))
+            put_rows(h5, group, &field, solid->nodes.packed, part->step, snapshot->step,
+                     part->n, part->rows);
     }
-    return names;
+    free(group);
+}
+
+static void put_solids(struct h5 *h5, const struct snapshot *snapshot)
+{
+    char *names = array_string("");
+    if (snapshot->n_solids > 0) {
+        h5_group(h5, "/solids");
+        h5_group(h5, "/checksums/solids");
+    }
+    for (int s = 0; s < snapshot->n_solids; s++) {
+        const struct snapshot_solid *solid = &snapshot->solids[s];
+        char *group = array_format("/solids/%s", solid->name);
+        char *sums = array_format("/checksums/solids/%s", solid->name);
+        names = snapshot_add_name(names, solid->name);
+        h5_group(h5, group);
+        h5_group(h5, sums);
+        table_declare(&solid->nodes, h5);
+        table_declare(&solid->elements, h5);
+        put_solid(h5, snapshot, solid);
+        free(sums);
+        free(group);
+    }
+    h5_put_document(h5, "/run/solids", names);
+    free(names);
 }
 
 static void put_all(struct h5 *h5, const void *content)
@@ -332,18 +488,21 @@ static void put_all(struct h5 *h5, const void *content)
         h5_put_text(h5, "/spheres/group", "names", snapshot->groups);
     if (snapshot->has_contacts)
         table_declare(&snapshot->contacts, h5);
-    char *names = body_names(snapshot);
+    char *names = array_string("");
+    for (int b = 0; b < snapshot->n_bodies; b++)
+        names = snapshot_add_name(names, snapshot->bodies[b].name);
     h5_group(h5, "/bodies");
     h5_put_document(h5, "/run/bodies", names);
     for (int b = 0; b < snapshot->n_bodies; b++)
         put_body(h5, snapshot, &snapshot->bodies[b]);
     free(names);
+    put_solids(h5, snapshot);
 }
 
 /* What put_all() writes besides tables, at most. */
 static int64_t content_size(const struct snapshot *snapshot)
 {
-    enum { BODY = 1 << 12, NAME = 1 << 8 };
+    enum { BODY = 1 << 12, SOLID = 1 << 15, NAME = 1 << 8 };
     int64_t size = (int64_t)(strlen(snapshot->title) + strlen(snapshot->materials) +
                              strlen(snapshot->groups));
     for (int b = 0; b < snapshot->n_bodies; b++) {
@@ -354,6 +513,15 @@ static int64_t content_size(const struct snapshot *snapshot)
         if (body->triangles_step == snapshot->step)
             size += body->n_triangles * (int64_t)field_size(&TRIANGLES);
     }
+    for (int k = 0; k < snapshot->n_solids; k++) {
+        const struct snapshot_solid *solid = &snapshot->solids[k];
+        size += SOLID + NAME;
+        for (int p = 0; p < SNAPSHOT_N_PARTS; p++) {
+            const struct field field = part_field(solid, p);
+            if (solid->parts[p].step == snapshot->step)
+                size += solid->parts[p].n * (int64_t)field_size(&field);
+        }
+    }
     return size;
 }
 
@@ -362,7 +530,15 @@ int snapshot_write(const struct comm *comm, const char *folder, struct snapshot 
     if (comm->rank == 0)
         find_meshes(folder, snapshot);
     char *path = file_step_path(folder, snapshot->step);
-    struct table tables[2] = {snapshot->spheres, snapshot->contacts};
+    struct table *tables = array_allocate(2 + 2 * (size_t)snapshot->n_solids, sizeof *tables);
+    int n_tables = 0;
+    tables[n_tables++] = snapshot->spheres;
+    if (snapshot->has_contacts)
+        tables[n_tables++] = snapshot->contacts;
+    for (int s = 0; s < snapshot->n_solids; s++) {
+        tables[n_tables++] = snapshot->solids[s].nodes;
+        tables[n_tables++] = snapshot->solids[s].elements;
+    }
     const struct shared_file file = {
         .folder = snapshot->folder,
         .path = path,
@@ -372,10 +548,11 @@ int snapshot_write(const struct comm *comm, const char *folder, struct snapshot 
         .lay_out = put_all,
         .content = snapshot,
         .size = content_size(snapshot),
-        .n_tables = snapshot->has_contacts ? 2 : 1,
+        .n_tables = n_tables,
         .tables = tables,
     };
     const int status = shared_file_write(comm, &file);
+    free(tables);
     free(path);
     return status;
 }
@@ -463,6 +640,59 @@ static void measure_bodies(struct h5 *h5, struct snapshot *snapshot)
     free(names);
 }
 
+/* One of a solid's parts, of whatever width. */
+static void measure_part(struct h5 *h5, struct snapshot_solid *solid, int p)
+{
+    char *group = array_format("/solids/%s", solid->name);
+    char *path = array_format("%s/%s", group, PARTS[p].name);
+    struct field field = PARTS[p];
+    (void)h5_find_rows(h5, path, &field);
+    if (h5->why == NULL && field.width != PARTS[p].width &&
+        (p != SNAPSHOT_CORNERS || field.width != 4))
+        h5_fail(h5, "%s has another shape than it should have", path);
+    solid->parts[p].width = field.width;
+    field = part_field(solid, p);
+    solid->parts[p].n = measure_rows(h5, group, &field, &solid->parts[p].step);
+    free(path);
+    free(group);
+}
+
+static void measure_solid(struct h5 *h5, struct snapshot_solid *solid)
+{
+    char *group = array_format("/solids/%s", solid->name);
+    char *cells = array_format("%s/%s", group, PARTS[SNAPSHOT_CELLS].name);
+    solid->material = h5_get_text(h5, group, "material");
+    solid->mixed = h5_has(h5, cells);
+    for (int p = 0; p < SNAPSHOT_N_PARTS; p++)
+        if (has_part(solid, p))
+            measure_part(h5, solid, p);
+    solid->n_nodes = solid->parts[SNAPSHOT_REFERENCE].n;
+    solid->n_elements = solid->parts[SNAPSHOT_CORNERS].n;
+    find_columns(h5, &solid->nodes, snapshot_node_fields, SNAPSHOT_N_NODE_FIELDS);
+    find_columns(h5, &solid->elements, snapshot_element_fields, SNAPSHOT_N_ELEMENT_FIELDS);
+    if (h5->why == NULL &&
+        (solid->nodes.n_total != solid->n_nodes ||
+         solid->elements.n_total != solid->n_elements ||
+         snapshot_column(&solid->nodes, "id") != SNAPSHOT_NODE_ID ||
+         snapshot_column(&solid->nodes, "position") != SNAPSHOT_NODE_POSITION ||
+         snapshot_column(&solid->elements, "id") != SNAPSHOT_ELEMENT_ID))
+        h5_fail(h5, "%s lacks some column, or rows of it", group);
+    free(cells);
+    free(group);
+}
+
+/* Snapshots of earlier versions have no list of them. */
+static void measure_solids(struct h5 *h5, struct snapshot *snapshot)
+{
+    if (h5->why != NULL || !h5_has(h5, "/run/solids"))
+        return;
+    char *names = h5_get_document(h5, "/run/solids"), *rest = names;
+    for (char *name; h5->why == NULL && (name = strsep(&rest, "\n")) != NULL;)
+        if (*name != '\0')
+            measure_solid(h5, append_solid(snapshot, name));
+    free(names);
+}
+
 static char *names_of(struct h5 *h5, const struct snapshot *snapshot, const char *column)
 {
     char *path = array_format("/spheres/%s", column);
@@ -493,12 +723,14 @@ static void measure(struct h5 *h5, struct snapshot *snapshot)
     if (snapshot->has_contacts && snapshot->contacts.n_columns < SNAPSHOT_N_CONTACT_FIELDS)
         h5_fail(h5, "/contacts lacks some column");
     measure_bodies(h5, snapshot);
+    measure_solids(h5, snapshot);
 }
 
-/* Rows of a mesh; the caller frees them. */
-static void *read_mesh(struct h5 *h5, const char *name, const struct field *field, int64_t n)
+/* Rows of a mesh in the group `kind` (bodies, solids); the caller frees them. */
+static void *read_mesh(struct h5 *h5, const char *kind, const char *name,
+                       const struct field *field, int64_t n)
 {
-    char *path = array_format("/bodies/%s/%s", name, field->name);
+    char *path = array_format("/%s/%s/%s", kind, name, field->name);
     const size_t size = field_size(field);
     void *rows = array_allocate((size_t)n, size);
     h5_read_rows(h5, path, field, 0, n, rows);
@@ -506,6 +738,43 @@ static void *read_mesh(struct h5 *h5, const char *name, const struct field *fiel
         h5_fail(h5, "%s: the checksum is wrong", path);
     free(path);
     return rows;
+}
+
+/* Is it the number of a node?  -1 is where `none` says so. */
+static void check_node(struct h5 *h5, const struct snapshot_solid *solid, int p, int32_t node,
+                       bool none)
+{
+    if (none ? node != -1 : node < 0 || node >= solid->n_nodes)
+        h5_fail(h5, "/solids/%s/%s: there is no node %d", solid->name, PARTS[p].name,
+                (int)node);
+}
+
+/* The last four of a tetrahedron among hexahedra are none. */
+static void check_nodes(struct h5 *h5, const struct snapshot_solid *solid, int p)
+{
+    const struct snapshot_rows *part = &solid->parts[p];
+    for (int64_t k = 0; k < part->n; k++) {
+        const int32_t *row = (const int32_t *)part->rows + k * part->width;
+        for (int c = 0; c < part->width; c++)
+            check_node(h5, solid, p, row[c], c >= 4 && row[4] < 0);
+    }
+}
+
+static void read_solid(struct h5 *h5, struct snapshot_solid *solid, const struct comm *alone)
+{
+    table_read(&solid->nodes, h5, alone, solid->n_nodes);
+    if (h5->why == NULL)
+        table_read(&solid->elements, h5, alone, solid->n_elements);
+    for (int p = 0; p < SNAPSHOT_N_PARTS && h5->why == NULL; p++) {
+        const struct field field = part_field(solid, p);
+        if (has_part(solid, p))
+            solid->parts[p].rows =
+                read_mesh(h5, "solids", solid->name, &field, solid->parts[p].n);
+    }
+    if (h5->why == NULL) {
+        check_nodes(h5, solid, SNAPSHOT_CORNERS);
+        check_nodes(h5, solid, SNAPSHOT_TRIANGLES);
+    }
 }
 
 static void read_rows(struct h5 *h5, struct snapshot *snapshot)
@@ -517,14 +786,16 @@ static void read_rows(struct h5 *h5, struct snapshot *snapshot)
         table_read(&snapshot->contacts, h5, &alone, snapshot->next_id);
     for (int b = 0; b < snapshot->n_bodies && h5->why == NULL; b++) {
         struct snapshot_body *body = &snapshot->bodies[b];
-        body->points = read_mesh(h5, body->name, &POINTS, body->n_points);
-        body->triangles = read_mesh(h5, body->name, &TRIANGLES, body->n_triangles);
+        body->points = read_mesh(h5, "bodies", body->name, &POINTS, body->n_points);
+        body->triangles = read_mesh(h5, "bodies", body->name, &TRIANGLES, body->n_triangles);
         for (int64_t k = 0; k < 3 * body->n_triangles; k++) {
             const int32_t point = body->triangles[k / 3][k % 3];
             if (point < 0 || point >= body->n_points)
                 h5_fail(h5, "/bodies/%s: there is no point %d", body->name, (int)point);
         }
     }
+    for (int s = 0; s < snapshot->n_solids && h5->why == NULL; s++)
+        read_solid(h5, &snapshot->solids[s], &alone);
 }
 
 static char *read_file(const char *path, struct snapshot *snapshot, bool rows)

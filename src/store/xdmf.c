@@ -21,7 +21,7 @@
 #include "store/run_folder.h"
 #include "store/snapshot.h"
 
-static const char *const NAMES[XDMF_N_KINDS] = {"spheres", "bodies", "contacts"};
+static const char *const NAMES[XDMF_N_KINDS] = {"spheres", "bodies", "contacts", "solids"};
 
 /* ------------------------------------------------------------------------------------ texts */
 
@@ -55,6 +55,24 @@ static void put_nothing(FILE *out)
             "Dimensions=\"1 3\">0 0 0</DataItem></Geometry>\n</Grid>\n");
 }
 
+/* The columns of a table, on points or cells, but for places. */
+static void put_attributes(FILE *out, const struct table *table, int64_t step,
+                           const char *centre)
+{
+    for (int k = 0; k < table->n_columns; k++) {
+        const struct field *field = &table->columns[k].field;
+        if (strcmp(field->name, "position") == 0)
+            continue;
+        fprintf(out, " <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"%s\">", field->name,
+                field->width == 1   ? "Scalar"
+                : field->width == 3 ? "Vector"
+                                    : "Matrix",
+                centre);
+        put_item(out, field, table->n_total, step, table->name);
+        fprintf(out, "</Attribute>\n");
+    }
+}
+
 /* Points that carry the columns of a table. */
 static void put_table(FILE *out, const struct snapshot *snapshot, const struct table *table,
                       double time)
@@ -71,15 +89,7 @@ static void put_table(FILE *out, const struct snapshot *snapshot, const struct t
     fprintf(out, " <Geometry GeometryType=\"XYZ\">");
     put_item(out, &table->columns[position].field, n, snapshot->step, table->name);
     fprintf(out, "</Geometry>\n");
-    for (int k = 0; k < table->n_columns; k++) {
-        const struct field *field = &table->columns[k].field;
-        if (k == position)
-            continue;
-        fprintf(out, " <Attribute Name=\"%s\" AttributeType=\"%s\" Center=\"Node\">",
-                field->name, field->width == 3 ? "Vector" : "Scalar");
-        put_item(out, field, n, snapshot->step, table->name);
-        fprintf(out, "</Attribute>\n");
-    }
+    put_attributes(out, table, snapshot->step, "Node");
     fprintf(out, "</Grid>\n");
 }
 
@@ -95,6 +105,31 @@ static void put_body(FILE *out, const struct snapshot_body *body, double time)
     fprintf(out, "</Topology>\n <Geometry GeometryType=\"XYZ\">");
     put_item(out, &points, body->n_points, body->points_step, group);
     fprintf(out, "</Geometry>\n</Grid>\n");
+    free(group);
+}
+
+/* An unstructured grid; cells of both kinds are listed one behind the other. */
+static void put_solid(FILE *out, const struct snapshot_solid *solid, int64_t step, double time)
+{
+    const int listed = solid->mixed ? SNAPSHOT_CELLS : SNAPSHOT_CORNERS;
+    const struct snapshot_rows *cells = &solid->parts[listed];
+    const struct field field = {
+        solid->mixed ? "cells" : "corners", "", "", FIELD_INT32, cells->width, 0};
+    char *group = array_format("solids/%s", solid->name);
+    put_head(out, solid->name, time);
+    fprintf(out, " <Topology TopologyType=\"%s\" NumberOfElements=\"%" PRId64 "\">",
+            solid->mixed        ? "Mixed"
+            : cells->width == 4 ? "Tetrahedron"
+                                : "Hexahedron",
+            solid->n_elements);
+    put_item(out, &field, cells->n, cells->step, group);
+    fprintf(out, "</Topology>\n <Geometry GeometryType=\"XYZ\">");
+    put_item(out, &solid->nodes.columns[SNAPSHOT_NODE_POSITION].field, solid->n_nodes, step,
+             solid->nodes.name);
+    fprintf(out, "</Geometry>\n");
+    put_attributes(out, &solid->nodes, step, "Node");
+    put_attributes(out, &solid->elements, step, "Cell");
+    fprintf(out, "</Grid>\n");
     free(group);
 }
 
@@ -118,9 +153,9 @@ void xdmf_clear(struct xdmf *xdmf)
     *xdmf = (struct xdmf){0};
 }
 
-/* Adds a table, or with `body` not negative that body. */
+/* Adds a table, or the body or solid of this number. */
 static void add_grid(struct xdmf_entry *entry, const struct snapshot *snapshot, int kind,
-                     int body)
+                     int number)
 {
     const double time = (double)snapshot->step * snapshot->dt;
     size_t size = 0;
@@ -130,8 +165,11 @@ static void add_grid(struct xdmf_entry *entry, const struct snapshot *snapshot, 
     FILE *out = open_memstream(&grid->text, &size);
     CHECK(out != NULL, "no memory for the index of snapshots");
     if (kind == XDMF_BODIES) {
-        grid->name = array_string(snapshot->bodies[body].name);
-        put_body(out, &snapshot->bodies[body], time);
+        grid->name = array_string(snapshot->bodies[number].name);
+        put_body(out, &snapshot->bodies[number], time);
+    } else if (kind == XDMF_SOLIDS) {
+        grid->name = array_string(snapshot->solids[number].name);
+        put_solid(out, &snapshot->solids[number], snapshot->step, time);
     } else {
         grid->name = array_string(NAMES[kind]);
         put_table(out, snapshot,
@@ -155,6 +193,8 @@ void xdmf_add(struct xdmf *xdmf, const struct snapshot *snapshot)
         add_grid(entry, snapshot, XDMF_BODIES, b);
     if (snapshot->has_contacts)
         add_grid(entry, snapshot, XDMF_CONTACTS, -1);
+    for (int s = 0; s < snapshot->n_solids; s++)
+        add_grid(entry, snapshot, XDMF_SOLIDS, s);
 }
 
 void xdmf_open(struct xdmf *xdmf, const char *folder, int64_t last_step)

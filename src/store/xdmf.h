@@ -1,7 +1,7 @@
 /*
  * The index of a folder of snapshots that ParaView and other readers of XDMF open:
- * spheres.xmf, bodies.xmf and, where there are any, contacts.xmf.  They hold no numbers but
- * times; they say which data sets of which files belong to which time.
+ * spheres.xmf and, where there are any, bodies.xmf, contacts.xmf, solids.xmf.  They hold no
+ * numbers but times; they say which data sets of which files belong to which time.
  *
  * An index describes only files that are there: it is written after a new one, and before old
  * ones are moved away.
@@ -14,7 +14,7 @@
 struct run_folder;
 struct snapshot;
 
-enum { XDMF_SPHERES, XDMF_BODIES, XDMF_CONTACTS, XDMF_N_KINDS };
+enum { XDMF_SPHERES, XDMF_BODIES, XDMF_CONTACTS, XDMF_SOLIDS, XDMF_N_KINDS };
 
 /* One thing at one time. */
 struct xdmf_grid {

@@ -52,6 +52,35 @@ same_run()
     equal "$1" "$2"
 }
 
+# same_snapshots A B: their folders are equal, byte for byte, the index too.
+same_snapshots()
+{
+    diff -r "$1/snapshots" "$2/snapshots" > said 2>&1 || why+=" the snapshots of $2 are not those of $1;"
+}
+
+# series RUN: its series in series.csv.
+series()
+{
+    "$bin/tremie-info" "$1" --csv series.csv > said 2>&1 || why+=" tremie-info ends with status $?;"
+}
+
+# columns PROGRAM OPTIONS...: awk over series.csv; at["NAME"] is the place of a column.
+columns()
+{
+    local program=$1
+    shift
+    awk -F, "$@" 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }'" $program" series.csv
+}
+
+# near WHAT VALUE EXPECTED SHARE: it is, within that share of it.
+near()
+{
+    awk -v value="$2" -v expected="$3" -v share="$4" 'BEGIN {
+        size = expected < 0 ? -expected : expected
+        exit !(value != "" && value >= expected - share * size && value <= expected + share * size)
+    }' || why+=" $1 is $2, not $3 within $4 of it;"
+}
+
 # result NAME: ok, or FAIL with the reasons and what was said last.
 result()
 {

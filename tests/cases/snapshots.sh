@@ -13,12 +13,6 @@ scenes=.
 plain="--set output.snapshots.every=0.005 --set output.snapshots.contacts=true"
 packed="$plain --set output.snapshots.compress=lossless --set output.snapshots.precision=single"
 
-# same_snapshots A B: their folders are equal, byte for byte, the index too.
-same_snapshots()
-{
-    diff -r "$1/snapshots" "$2/snapshots" > said 2>&1 || why+=" the snapshots of $2 are not those of $1;"
-}
-
 # ------------------------------------------------------------------ bits
 run 1 without mixed
 run 1 plain mixed $plain

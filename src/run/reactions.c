@@ -1,0 +1,137 @@
+/*
+ * See reactions.h.  A row comes before the nodes move, and with them what is booked: the force
+ * of its step is found here ahead and booked as taken away, so that what is booked when nodes
+ * move leaves nothing, exactly.
+ */
+#include "run/reactions.h"
+
+#include <ctype.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "job/job.h"
+#include "run/simulation.h"
+#include "store/series.h"
+
+/* ------------------------------------------------------------------------------- columns */
+
+/* A set's name as part of a column's: files may give names of any letters. */
+static char *plain_name(const char *set)
+{
+    char *name = array_string(set);
+    for (char *c = name; *c != '\0'; c++)
+        if (!isalnum((unsigned char)*c) && *c != '-' && *c != '_')
+            *c = '_';
+    return name;
+}
+
+static bool is_support(const struct job_boundary *asked)
+{
+    return asked->fixed != 0 || asked->n_displacements > 0 || asked->has_velocity ||
+           asked->n_velocities > 0;
+}
+
+/* "plate.x_min", or "plate.x_min.3" where an item before item 3 has the name already.  The
+ * caller frees it. */
+static char *column_owner(const struct job_body *body, int item)
+{
+    char *set = plain_name(body->solid.boundary[item].set);
+    bool taken = false;
+    for (int k = 0; k < item && !taken; k++) {
+        char *other = plain_name(body->solid.boundary[k].set);
+        taken = is_support(&body->solid.boundary[k]) && strcmp(set, other) == 0;
+        free(other);
+    }
+    char *owner = taken ? array_format("%s.%s.%d", body->name, set, item)
+                        : array_format("%s.%s", body->name, set);
+    free(set);
+    return owner;
+}
+
+static void add_columns(struct series *table, const struct job_body *body, int item)
+{
+    const struct job_boundary *asked = &body->solid.boundary[item];
+    const int directions = asked->fixed != 0 ? asked->fixed : 1 << asked->direction;
+    char *owner = column_owner(body, item), help[160];
+    for (int d = 0; d < 3; d++) {
+        if ((directions >> d & 1) == 0)
+            continue;
+        snprintf(help, sizeof help,
+                 "force of what %s set %.60s along %c, mean since the row before",
+                 asked->fixed != 0 ? "holds" : "moves", asked->set, "xyz"[d]);
+        series_add_column(table, "N", help, "%s.reaction_%c", owner, "xyz"[d]);
+        if (asked->fixed == 0)
+            series_add_column(table, "J", "work of what moves the set", "%s.work_%c", owner,
+                              "xyz"[d]);
+    }
+    free(owner);
+}
+
+void reactions_add_columns(const struct simulation *sim, struct series *table)
+{
+    for (int k = 0; k < sim->deform.n; k++) {
+        const struct job_body *body = &sim->job->bodies[sim->deform.list[k].body];
+        for (int item = 0; item < body->solid.n_boundary; item++)
+            if (is_support(&body->solid.boundary[item]))
+                add_columns(table, body, item);
+    }
+}
+
+/* --------------------------------------------------------------------------------- values */
+
+enum { FORCE, WORK, PARTS };
+
+/* Adds what supports do in this step to totals, and takes forces away from what is booked.
+ * Half of its work is done by now. */
+static void add_step(struct solid *solid, int64_t step, double dt, struct exact_sum *sums)
+{
+    struct solid_supports *supports = &solid->supports;
+    solid_supports_set(supports, step + 1, dt);
+    for (int i = 0; i < solid->n_nodes; i++) {
+        const int *held = supports->of_node[i];
+        if (!solid->moves[i] || (held[0] < 0 && held[1] < 0 && held[2] < 0))
+            continue;
+        const struct solid_advance advance = solid_advance(solid, i, dt);
+        const double *v = solid_velocity(solid, i);
+        for (int d = 0; d < 3; d++) {
+            if (held[d] < 0)
+                continue;
+            const double force = advance.support[d];
+            exact_sum_add(&sums[PARTS * held[d] + FORCE], force);
+            exact_sum_add(&supports->list[held[d]].force[d], -force);
+            if (step > 0 && supports->list[held[d]].kind != SOLID_SUPPORT_FIXED)
+                exact_sum_add(&sums[PARTS * held[d] + WORK], 0.5 * dt * (force * v[d]));
+        }
+    }
+}
+
+static int add_values(struct simulation *sim, struct solid *solid, double n_steps, double *row,
+                      int n)
+{
+    struct solid_supports *supports = &solid->supports;
+    struct exact_sum *sums = array_allocate((size_t)supports->n * PARTS, sizeof *sums);
+    for (int s = 0; s < supports->n; s++) {
+        struct exact_sum *force = &supports->list[s].force[supports->list[s].direction];
+        sums[PARTS * s + FORCE] = *force;
+        sums[PARTS * s + WORK] = supports->list[s].work;
+        *force = (struct exact_sum){0};
+    }
+    add_step(solid, sim->step, sim->dt, sums);
+    exact_sum_reduce(sim->comm, sums, PARTS * supports->n);
+    for (int s = 0; s < supports->n; s++) {
+        row[n++] = exact_sum_value(&sums[PARTS * s + FORCE]) / n_steps;
+        if (supports->list[s].kind != SOLID_SUPPORT_FIXED)
+            row[n++] = exact_sum_value(&sums[PARTS * s + WORK]);
+    }
+    free(sums);
+    return n;
+}
+
+int reactions_values(struct simulation *sim, double n_steps, double *row, int n)
+{
+    for (int k = 0; k < sim->deform.n; k++)
+        n = add_values(sim, &sim->deform.list[k].solid, n_steps, row, n);
+    return n;
+}
