@@ -285,6 +285,16 @@ static void keep_faces(struct facet_tree_found *found, const struct mesh *mesh)
         found->n--;
 }
 
+static void keep_met(const struct facet_contacts *facets, struct facet_tree_found *found, int i,
+                     int b)
+{
+    int n = 0;
+    for (int k = 0; k < found->n && facets->meets != NULL; k++)
+        if (facets->meets(facets->from, i, b, found->features[k]))
+            found->features[n++] = found->features[k];
+    found->n = facets->meets != NULL ? n : found->n;
+}
+
 void facet_contacts_search(struct facet_contacts *facets, const struct spheres *spheres,
                            const struct bodies *bodies, const double *body_allowance,
                            bool all_pairs)
@@ -303,6 +313,7 @@ void facet_contacts_search(struct facet_contacts *facets, const struct spheres *
                 find_features(work, b, mesh, spheres, i, body_allowance[b]);
             if (bodies->list[b].skin != NULL)
                 keep_faces(found, mesh);
+            keep_met(facets, found, i, b);
             for (int k = 0; k < found->n; k++)
                 list_contact(facets,
                              (struct facet_contact){
@@ -476,6 +487,11 @@ static void put_lanes(double places[3][FACET_KERNEL_BATCH], int k, struct vec3 v
     places[2][k] = value.z;
 }
 
+static double width_of(const struct facet_contacts *facets, int sphere)
+{
+    return facets->width != NULL ? facets->width[sphere] : 1.0;
+}
+
 /* Puts a contact into the batch, of a body that does not move; returns where. */
 static int add_resting(const struct step *step, int entry, const struct contact_geometry *at,
                        double overlap)
@@ -497,7 +513,7 @@ static int add_resting(const struct step *step, int entry, const struct contact_
     put_lanes(batch->turns, k, (struct vec3){0.0, 0.0, 0.0});
     batch->overlap[k] = overlap;
     batch->yield[k] = 0.0;
-    batch->width[k] = 1.0;
+    batch->width[k] = width_of(step->facets, contact->sphere);
     step->facets->work->pushed[k] = (struct pushed){0};
     return k;
 }
@@ -567,8 +583,9 @@ static void add_part(const struct step *step, int begin, const struct facet_patc
     const double plane = PI * patch->depth * (2.0 * radius - patch->depth); /* [m2] */
     const double curvature = sphere_curvature(step->spheres, contact->sphere);
     const double pressure =
+        work->batch.width[k] *
         contact_law_normal_force(patch->depth, curvature, work->batch.pair[k]) / plane;
-    work->batch.width[k] = facing / plane;
+    work->batch.width[k] *= facing / plane;
     work->pushed[k] = (struct pushed){.pressure = pressure,
                                       .elastic = vec3_scale(-pressure, part->facing),
                                       .holds_energy = part == patch->parts};
@@ -703,7 +720,8 @@ static void list_groups(struct facet_contacts *facets, const struct spheres *sph
     for (int k = 0, end; k < facets->n; k = end) {
         for (end = k + 1; end < facets->n && list[end].sphere == list[k].sphere; end++)
             continue;
-        if (are_plain(&list[k], end - k, bodies) && !spheres->periodic.any) {
+        if (are_plain(&list[k], end - k, bodies) && !spheres->periodic.any &&
+            facets->width == NULL) {
             ARRAY_GROW(work->plain, work->n_plain + 1, work->plain_capacity);
             work->plain[work->n_plain++] = &list[k];
             continue;
@@ -888,9 +906,10 @@ void facet_contacts_held(const struct facet_contacts *facets, const struct spher
         const int material = spheres->material[contact->sphere];
         if (!body->exists && holds_history(contact))
             exact_sum_add(
-                sum,
-                held_energy(spheres, body, contact,
-                            &materials->pairs[material * materials->n + body->material], dt));
+                sum, width_of(facets, contact->sphere) *
+                         held_energy(
+                             spheres, body, contact,
+                             &materials->pairs[material * materials->n + body->material], dt));
     }
 }
 
@@ -906,8 +925,9 @@ void facet_contacts_elastic_energy(const struct facet_contacts *facets,
         const int i = contact->sphere, wall = bodies->list[contact->body].material;
         const struct material_pair *pair =
             &materials->pairs[spheres->material[i] * materials->n + wall];
-        exact_sum_add(normal, contact_law_normal_energy(contact->overlap,
-                                                        sphere_curvature(spheres, i), pair));
+        exact_sum_add(normal, width_of(facets, i) *
+                                  contact_law_normal_energy(
+                                      contact->overlap, sphere_curvature(spheres, i), pair));
         exact_sum_add(springs, contact_law_spring_energy(pair, contact->history));
     }
 }

@@ -61,6 +61,11 @@ struct body_load {
 };
 
 struct facet_contacts {
+    /* Set after facet_contacts_init() where what touches is not spheres alone: */
+    const double
+        *width; /* of each sphere's contacts, over what the law takes them for; NULL: 1 */
+    bool (*meets)(const void *from, int sphere, int body, int feature); /* NULL: all with all */
+    const void *from;
     int n, capacity;
     struct facet_contact *list; /* sorted by (sphere's canonical order, body, feature) */
     struct body_load *loads;    /* one a body */

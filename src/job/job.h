@@ -246,6 +246,9 @@ enum job_mesh_kind {
 enum job_elements { JOB_ELEMENTS_HEXAHEDRA, JOB_ELEMENTS_TETRAHEDRA };
 enum job_hourglass { JOB_HOURGLASS_STIFFNESS, JOB_HOURGLASS_VISCOUS };
 
+/* What the nodes of a solid touch. */
+enum job_touches { JOB_TOUCHES_SPHERES, JOB_TOUCHES_BODIES, JOB_TOUCHES_ITSELF };
+
 /* A part of a solid: its nodes in a region. */
 struct job_set {
     char *name;
@@ -309,6 +312,10 @@ struct job_solid {
         enum job_hourglass kind;
         double coefficient; /* [-] */
     } hourglass;
+    struct {
+        enum job_touches what;
+        double stiffness; /* of a node's spring, over what it is made of [-] */
+    } touches;
     int n_sets, n_boundary;
     struct job_set *sets;
     struct job_boundary *boundary;

@@ -1106,6 +1106,21 @@ static void periods_check(const struct check *check)
 
 /* ------------------------------------------------------------------------------- pairs */
 
+/* May a body that is made of one material touch another, or itself? */
+static bool bodies_meet(const struct job *job, int a, int b)
+{
+    for (int k = 0; k < job->n_bodies; k++) {
+        const enum job_touches what = job->bodies[k].solid.touches.what;
+        for (int m = 0; m < job->n_bodies && what != JOB_TOUCHES_SPHERES; m++) {
+            const int p = job->bodies[k].material, q = job->bodies[m].material;
+            if ((m != k || what == JOB_TOUCHES_ITSELF) &&
+                ((p == a && q == b) || (p == b && q == a)))
+                return true;
+        }
+    }
+    return false;
+}
+
 /* Lists pairs of materials that are given twice or are missing.  `falling` are the spheres'
  * materials, `standing` those of bodies. */
 static void pairs_check(const struct check *check, const bool *falling, const bool *standing)
@@ -1129,8 +1144,8 @@ static void pairs_check(const struct check *check, const bool *falling, const bo
     }
     for (size_t a = 0; a < n && is_clean(check, "contact"); a++) {
         for (size_t b = a; b < n; b++) {
-            const bool meet =
-                (falling[a] && (falling[b] || standing[b])) || (standing[a] && falling[b]);
+            const bool meet = (falling[a] && (falling[b] || standing[b])) ||
+                              (standing[a] && falling[b]) || bodies_meet(job, (int)a, (int)b);
             const char *p = job->materials[a].name, *q = job->materials[b].name;
             if (meet && given[a * n + b] == 0)
                 mistake(check, "contact.pairs",

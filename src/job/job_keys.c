@@ -45,6 +45,7 @@ static const char *const models[] = {"rigid", "solid", NULL};
 static const char *const mesh_kinds[] = {"box", "plate", "cylinder", "tube", "gmsh", NULL};
 static const char *const elements[] = {"hexahedra", "tetrahedra", NULL};
 static const char *const hourglasses[] = {"stiffness", "viscous", NULL};
+static const char *const touched[] = {"spheres", "bodies", "itself", NULL};
 static const char *const packings[] = {"lattice", "hexagonal", "random", "csv", "hdf5", NULL};
 static const char *const region_kinds[] = {"box", "cylinder", "sphere", "inside", NULL};
 static const char *const sizes_kinds[] = {"list",      "uniform", "normal",
@@ -203,7 +204,7 @@ static const struct schema_key contact_keys[] = {
      .standard = "true", AT(struct job, energy_ledger)},
     {"pairs", SCHEMA_LIST,
      "what happens between two materials; every two that can meet need one (spheres among "
-     "each other, spheres with bodies)",
+     "each other, spheres with bodies, bodies that touch bodies)",
      UP_TO(JOB_KEYS_MAX_PAIRS), .inside = pair_keys, LIST_AT(struct job, pairs, n_pairs)},
     END};
 
@@ -776,6 +777,18 @@ static const struct schema_key hourglass_keys[] = {
      BETWEEN(0.0, 1.0), AT(struct job_body, solid.hourglass.coefficient)},
     END};
 
+static const struct schema_key touches_keys[] = {
+    {"what", SCHEMA_CHOICE,
+     "spheres alone; all other bodies besides; these and its own surface, where that was apart "
+     "at the start",
+     .standard = "spheres", .choices = touched, AT(struct job_body, solid.touches.what)},
+    {"stiffness", SCHEMA_NUMBER,
+     "of a node's spring, over the lesser of the two moduli times the root of the node's share "
+     "of the surface; what is more than some 0.5 lowers the critical step",
+     .unit = "1", .standard = "0.5", BETWEEN(0.001, 1000.0),
+     AT(struct job_body, solid.touches.stiffness)},
+    END};
+
 #define RIGID KIND(JOB_MODEL_RIGID)
 #define SOLID KIND(JOB_MODEL_SOLID)
 
@@ -802,6 +815,8 @@ static const struct schema_key body_keys[] = {
      .inside = solid_damping_keys},
     {"hourglass", SCHEMA_GROUP, "hourglass control of hexahedra", .kinds = SOLID,
      .inside = hourglass_keys},
+    {"touches", SCHEMA_GROUP, "what its nodes touch; its faces touch whatever touches them",
+     .kinds = SOLID, .inside = touches_keys},
     {"motion", SCHEMA_LIST,
      "how it moves as prescribed; one mapping, or several in sequence or together: each moves "
      "what those before it have made of the body, about points and along directions fixed in "

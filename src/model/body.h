@@ -20,7 +20,8 @@ struct job_motion;
 struct rigid;
 
 /* The surface of a body that deforms: how it moves and what pushes it, at each corner of the
- * mesh (vertices below n_corners), and what of it was smooth at the start. */
+ * mesh (vertices below n_corners; behind them run/deform may push nodes below the surface), and
+ * what of it was smooth at the start. */
 struct body_skin {
     struct vec3 *velocity;        /* half a step before [m/s] */
     double *inverse_mass;         /* [1/kg] */

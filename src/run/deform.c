@@ -9,8 +9,10 @@
 #include "base/report.h"
 #include "base/timer.h"
 #include "job/job.h"
+#include "model/solid_ball.h"
 #include "model/solid_condition.h"
 #include "model/solid_mesh.h"
+#include "run/node_springs.h"
 #include "run/simulation.h"
 #include "solid/solid_limits.h"
 
@@ -114,6 +116,21 @@ static void prescribe(struct solid *solid, const struct solid_mesh *mesh,
     }
 }
 
+static void add_balls(struct deform *deform, struct deform_body *own,
+                      const struct solid_mesh *mesh, struct body *body)
+{
+    const int n = body->mesh.n_corners;
+    int *nodes = array_allocate((size_t)n, sizeof *nodes);
+    own->balls = solid_balls(mesh, &body->mesh, own->skin.nodes);
+    own->inner = array_allocate((size_t)n, sizeof *own->inner);
+    own->n_balls = n;
+    for (int k = 0; k < n; k++)
+        nodes[k] = own->balls[k].inner;
+    deform_skin_add(&own->skin, body, mesh->n_nodes, n, nodes, own->inner);
+    deform->n_balls += n;
+    free(nodes);
+}
+
 static void build_body(struct deform *deform, const struct simulation *sim, int b, enum isa isa)
 {
     struct deform_body *own = &deform->list[deform->n++];
@@ -121,8 +138,10 @@ static void build_body(struct deform *deform, const struct simulation *sim, int 
     struct body_skin *skin = sim->bodies.list[b].skin;
     struct solid_mesh mesh;
     int n_vertices, *nodes, (*facets)[4];
-    *own = (struct deform_body){
-        .body = b, .first_node = deform->n_nodes, .first_element = deform->n_elements};
+    *own = (struct deform_body){.body = b,
+                                .first_node = deform->n_nodes,
+                                .first_element = deform->n_elements,
+                                .first_ball = deform->n_balls};
     solid_mesh_build(&mesh, body);
     solid_mesh_skin(&mesh, &n_vertices, &nodes, &facets);
     CHECK(n_vertices == sim->bodies.list[b].mesh.n_corners, "a skin of %d vertices",
@@ -133,6 +152,8 @@ static void build_body(struct deform *deform, const struct simulation *sim, int 
     deform_skin_init(&own->skin, nodes, &sim->bodies.list[b]);
     for (int v = 0; v < n_vertices; v++)
         skin->inverse_mass[v] = 1.0 / own->solid.mass[nodes[v]];
+    if (body->solid.touches.what != JOB_TOUCHES_SPHERES)
+        add_balls(deform, own, &mesh, &sim->bodies.list[b]);
     deform_skin_renew(own, &sim->bodies.list[b]);
     deform->n_nodes += own->solid.n_nodes;
     deform->n_elements += own->solid.n_elements;
@@ -158,6 +179,8 @@ void deform_clear(struct deform *deform, const struct comm *comm)
         solid_destroy(&deform->list[k].solid);
         deform_share_clear(&deform->list[k].share, comm);
         deform_skin_clear(&deform->list[k].skin);
+        free(deform->list[k].balls);
+        free(deform->list[k].inner);
     }
     comm_mail_clear(&deform->mail);
     free(deform->near);
@@ -171,6 +194,7 @@ void deform_clear(struct deform *deform, const struct comm *comm)
 
 void deform_begin(struct simulation *sim)
 {
+    sim->deform.failed = false;
     for (int k = 0; k < sim->deform.n; k++)
         deform_skin_place(&sim->deform.list[k], &sim->bodies.list[sim->deform.list[k].body]);
 }
@@ -199,24 +223,29 @@ static void explain(const struct simulation *sim, const struct deform_body *defo
 }
 
 /* Contacts' forces on the nodes that are moved here. */
-static void take_forces(struct deform_body *deform, const struct body_skin *skin)
+static void take_forces(struct deform_body *deform, const struct body_skin *skin, int n_corners)
 {
     for (int k = 0; k < deform->skin.n_corners; k++) {
         const int v = deform->skin.vertices[k], node = deform->skin.nodes[v];
         for (int x = 0; deform->solid.moves[node] && x < 3; x++)
             deform->solid.contact[node][x] = exact_sum_value(&skin->force[v][x]);
     }
+    for (int p = n_corners; p < deform->skin.n_points; p++) {
+        const int node = deform->skin.nodes[p];
+        for (int x = 0; deform->solid.moves[node] && x < 3; x++)
+            deform->solid.contact[node][x] = exact_sum_value(&skin->force[p][x]);
+    }
 }
 
 void deform_plan(struct simulation *sim)
 {
-    sim->deform.failed = false;
     deform_share_push(sim);
     const double began = timer_now();
     for (int k = 0; k < sim->deform.n; k++) {
         struct deform_body *deform = &sim->deform.list[k];
         struct solid *solid = &deform->solid;
-        take_forces(deform, sim->bodies.list[deform->body].skin);
+        take_forces(deform, sim->bodies.list[deform->body].skin,
+                    sim->bodies.list[deform->body].mesh.n_corners);
         solid->gravity[0] = sim->gravity.x;
         solid->gravity[1] = sim->gravity.y;
         solid->gravity[2] = sim->gravity.z;
@@ -307,7 +336,12 @@ double deform_critical_step(const struct simulation *sim, int *body)
 {
     double least = (double)INFINITY;
     for (int k = 0; k < sim->deform.n; k++) {
-        double step = solid_limits_find(&sim->deform.list[k].solid, NULL, NULL).step;
+        struct node_springs springs;
+        node_springs_find(&springs, sim, k);
+        double step =
+            solid_limits_find(&sim->deform.list[k].solid, springs.stiffness, springs.damping)
+                .step;
+        node_springs_clear(&springs);
         comm_min(sim->comm, &step, 1);
         if (step < least) {
             least = step;

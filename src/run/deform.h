@@ -24,15 +24,20 @@ struct deform_body {
     struct deform_share share;
     struct deform_skin skin;
     int64_t first_node, first_element; /* their ids, counted over all solids */
+    /* Where its nodes touch bodies (run/touch.h), one a corner of the mesh, else none: */
+    int n_balls, first_ball; /* counted likewise */
+    struct solid_ball *balls;
+    int *inner; /* of each ball the inner node among the skin's points; -1: there is no ball */
 };
 
 struct deform {
     int n;
     struct deform_body *list;
     int64_t n_nodes, n_elements; /* of all */
-    bool failed;                 /* some element here has, in this step */
-    bool hourglass;              /* some solid has too much energy in hourglass modes */
-    double spent; /* share of their allowances that surfaces have used in the last step */
+    int n_balls;
+    bool failed;    /* some element here has, in this step */
+    bool hourglass; /* some solid has too much energy in hourglass modes */
+    double spent;   /* share of their allowances that surfaces have used in the last step */
     int n_near,
         *near; /* ranks with copies of nodes moved here, or whose nodes have copies here */
     int n_pushing, *pushing; /* those of which some node may be touched on the other */
@@ -61,8 +66,8 @@ struct deform_sizes deform_sizes(const struct deform *deform);
 /* Totals over all solids and ranks, between deform_plan() and deform_move(); notes whether some
  * solid has too much in hourglass modes.  Collective. */
 void deform_energies(struct simulation *sim, struct solid_energies *energies);
-/* The critical step of the elements as they are, without contacts; *body is whose.  Infinite
- * without any.  Collective. */
+/* The critical step of the elements as they are, with the contacts that touch now; *body is
+ * whose.  Infinite without any.  Collective. */
 double deform_critical_step(const struct simulation *sim, int *body);
 
 #endif

@@ -7,6 +7,7 @@
 #include "base/array.h"
 #include "base/report.h"
 #include "job/job.h"
+#include "model/solid_ball.h"
 #include "run/deform_state.h"
 #include "run/simulation.h"
 
@@ -106,7 +107,8 @@ static bool face_counts(const struct deform_body *deform, const struct mesh *mes
 static bool is_reached(const struct simulation *sim, int rank, const struct extent *extent)
 {
     return sim->job->force.search == JOB_SEARCH_ALL_PAIRS ||
-           halo_reaches(&sim->halo, rank, extent->low, extent->high);
+           halo_reaches(&sim->halo, rank, extent->low, extent->high) ||
+           touch_reaches(&sim->touch, rank, extent->low, extent->high);
 }
 
 static void offer_faces(struct simulation *sim, int b)
@@ -328,6 +330,9 @@ static void request_copies(struct simulation *sim, int b)
         share->copy[solid->here[k]] = FOR_ELEMENT;
     for (int t = 0; t < share->n_touched; t++)
         mark_face(deform, mesh, share->touched[t]);
+    for (int k = 0; k < deform->n_balls; k++)
+        if (deform->balls[k].inner >= 0 && solid->moves[deform->balls[k].outer])
+            share->copy[deform->balls[k].inner] |= TOUCHED;
     for (int i = 0; i < solid->n_nodes; i++) {
         struct deform_share_peer *peer = &share->peers[share->owner[i]];
         if (share->copy[i] == 0 || solid->moves[i])
@@ -338,7 +343,7 @@ static void request_copies(struct simulation *sim, int b)
         request.pushes = (share->copy[i] & TOUCHED) != 0;
         comm_mail_pack(&sim->deform.mail, share->owner[i], &request, sizeof request);
     }
-    for (int v = 0; v < mesh->n_corners; v++) {
+    for (int v = 0; v < deform->skin.n_points; v++) {
         const int i = deform->skin.nodes[v];
         struct deform_share_peer *peer = &share->peers[share->owner[i]];
         if ((share->copy[i] & TOUCHED) != 0 && !solid->moves[i])
@@ -410,6 +415,7 @@ void deform_share_renew(struct simulation *sim)
     struct deform *deform = &sim->deform;
     if (sim->comm->n_ranks == 1 || deform->n == 0)
         return;
+    touch_find_extents(sim);
     comm_mail_begin(&deform->mail);
     for (int b = 0; b < deform->n; b++) {
         struct deform_share *share = &deform->list[b].share;

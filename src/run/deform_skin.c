@@ -11,7 +11,7 @@
 void deform_skin_init(struct deform_skin *skin, int *nodes, const struct body *body)
 {
     const struct mesh *mesh = &body->mesh;
-    *skin = (struct deform_skin){.nodes = nodes};
+    *skin = (struct deform_skin){.nodes = nodes, .n_points = mesh->n_corners};
     skin->vertices = array_allocate((size_t)mesh->n_vertices, sizeof *skin->vertices);
     skin->is_here = array_allocate((size_t)mesh->n_vertices, sizeof *skin->is_here);
     skin->faces = array_allocate((size_t)mesh->n_faces, sizeof *skin->faces);
@@ -24,6 +24,29 @@ void deform_skin_clear(struct deform_skin *skin)
     free(skin->is_here);
     free(skin->faces);
     *skin = (struct deform_skin){0};
+}
+
+void deform_skin_add(struct deform_skin *skin, struct body *body, int n_nodes, int n,
+                     const int *nodes, int *points)
+{
+    const size_t had = (size_t)skin->n_points, most = had + (size_t)n;
+    int *point = array_allocate((size_t)n_nodes, sizeof *point); /* of each node, from 1 */
+    skin->nodes = array_resize(skin->nodes, had, most, sizeof *skin->nodes);
+    for (int p = 0; p < skin->n_points; p++)
+        point[skin->nodes[p]] = p + 1;
+    for (int k = 0; k < n; k++) {
+        points[k] = -1;
+        if (nodes[k] < 0)
+            continue;
+        if (point[nodes[k]] == 0) {
+            skin->nodes[skin->n_points++] = nodes[k];
+            point[nodes[k]] = skin->n_points;
+        }
+        points[k] = point[nodes[k]] - 1;
+    }
+    body->skin->force =
+        array_resize(body->skin->force, had, (size_t)skin->n_points, sizeof *body->skin->force);
+    free(point);
 }
 
 static struct vec3 vec3_of(const double *lane)
@@ -53,6 +76,8 @@ void deform_skin_place(const struct deform_body *deform, struct body *body)
         memset(body->skin->force[v], 0, sizeof body->skin->force[v]);
         speed2_max = speed2 > speed2_max ? speed2 : speed2_max;
     }
+    for (int p = mesh->n_corners; p < skin->n_points; p++)
+        memset(body->skin->force[p], 0, sizeof body->skin->force[p]);
     for (int k = skin->n_corners; k < skin->n_vertices; k++)
         place_mean(mesh, skin->vertices[k]);
     for (int k = 0; k < skin->n_faces; k++)

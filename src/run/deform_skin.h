@@ -13,7 +13,8 @@ struct mesh;
 struct simulation;
 
 struct deform_skin {
-    int *nodes;                /* of each corner of the mesh */
+    int *nodes;   /* of each corner of the mesh, and of points below that balls push */
+    int n_points; /* all of these */
     int n_vertices, *vertices; /* here: corners, then mean points; ascending */
     int n_corners;             /* of these */
     int n_faces, *faces;       /* all of whose vertices are here, ascending */
@@ -23,6 +24,10 @@ struct deform_skin {
 /* Takes over the nodes; nothing is here yet. */
 void deform_skin_init(struct deform_skin *skin, int *nodes, const struct body *body);
 void deform_skin_clear(struct deform_skin *skin);
+/* Makes nodes points that take forces, corners of the mesh or not; points[k] becomes that of
+ * nodes[k], which may be -1: none, and be there several times. */
+void deform_skin_add(struct deform_skin *skin, struct body *body, int n_nodes, int n,
+                     const int *nodes, int *points);
 
 /* Finds out what of the surface is here, and puts it where its nodes are.  Local. */
 void deform_skin_renew(struct deform_body *deform, struct body *body);

@@ -347,6 +347,10 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
     const struct exact_sum *totals = sim->observe.totals;
     exact_sum_merge(&sums[ENERGY_FRICTION], &totals[OBSERVE_REMOVED_FRICTION]);
     exact_sum_merge(&sums[ENERGY_DAMPING], &totals[OBSERVE_REMOVED_DAMPING]);
+    exact_sum_merge(&sums[ENERGY_FRICTION], &totals[OBSERVE_TOUCH_FRICTION]);
+    exact_sum_merge(&sums[ENERGY_DAMPING], &totals[OBSERVE_TOUCH_DAMPING]);
+    touch_energies(sim, &sums[ENERGY_ELASTIC], &sums[ENERGY_SPRINGS], &sums[ENERGY_FRICTION],
+                   &sums[ENERGY_DAMPING]);
     exact_sum_merge(&sums[ENERGY_TANGENTIAL], &totals[OBSERVE_WOUND]);
     for (int b = 0; b < sim->facets.n_bodies; b++)
         exact_sum_merge(&sums[ENERGY_TANGENTIAL], &sim->facets.loads[b].wound);
@@ -650,9 +654,10 @@ static void add_supports(struct observe_monitor **monitors, int *n, int *capacit
 int observe_monitors(struct simulation *sim, struct observe_monitor **monitors)
 {
     static const char *const totals[OBSERVE_N_TOTALS] = {
-        "energy_start", "removed_energy", "removed_friction", "removed_damping", "tangential",
-        "last_step",    "turned",         "overlap",          "inserted_energy", "crossed_x",
-        "crossed_y",    "crossed_z",      "gravity_work",
+        "energy_start",    "removed_energy", "removed_friction", "removed_damping",
+        "tangential",      "last_step",      "turned",           "overlap",
+        "inserted_energy", "crossed_x",      "crossed_y",        "crossed_z",
+        "gravity_work",    "touch_friction", "touch_damping",
     };
     static const char *const loads[] = {"force_x",  "force_y",  "force_z",
                                         "torque_x", "torque_y", "torque_z"};

@@ -31,7 +31,9 @@ enum observe_total {
     OBSERVE_CROSSED_X,       /* mass times periods crossed [kg m] */
     OBSERVE_CROSSED_Y,
     OBSERVE_CROSSED_Z,
-    OBSERVE_GRAVITY_WORK, /* of gravity that changes, on the spheres [J] */
+    OBSERVE_GRAVITY_WORK,   /* of gravity that changes, on the spheres [J] */
+    OBSERVE_TOUCH_FRICTION, /* dissipated between bodies [J] */
+    OBSERVE_TOUCH_DAMPING,
     OBSERVE_N_TOTALS,
 };
 

@@ -71,12 +71,14 @@ static void choose_allowances(struct simulation *sim, int begin, int end)
 
 static void choose_body_allowances(struct simulation *sim)
 {
+    const double least =
+        sim->half_buffer < sim->touch.buffer ? sim->half_buffer : sim->touch.buffer;
     for (int b = 0; b < sim->bodies.n; b++) {
         /* A body that forces move or deform may be faster by the next search. */
         const struct body *body = &sim->bodies.list[b];
         const double margin = body->rigid != NULL || body->skin != NULL ? SPEED_MARGIN : 1.0;
         const double reach = margin * body->speed_max * SEARCH_STEPS * sim->dt;
-        sim->body_allowance[b] = reach > sim->half_buffer ? reach : sim->half_buffer;
+        sim->body_allowance[b] = reach > least ? reach : least;
     }
 }
 
@@ -191,6 +193,7 @@ static int search(struct simulation *sim, const int *moved, bool some_left_run)
     prune(sim, moved);
     const int n_strange = restore_arrivals(sim, some_left_run);
     facet_contacts_search(&sim->facets, spheres, &sim->bodies, sim->body_allowance, all_pairs);
+    touch_search(sim, all_pairs);
     sections_search(&sim->sections, spheres);
     removals_search(&sim->removals, spheres);
     for (int i = 0; i < spheres->n_owned; i++) {

@@ -70,7 +70,9 @@ static double choose_half_buffer(const struct simulation *sim)
         radius += 0.5 * (sizes->min + sizes->max);
         n += 1.0;
     }
-    return n > 0.0 ? 0.25 * radius / n : 1.0;
+    if (n > 0.0)
+        return 0.25 * radius / n;
+    return sim->touch.n_balls > 0 ? sim->touch.buffer : 1.0;
 }
 
 /* All that does not depend on where the spheres come from. */
@@ -90,6 +92,7 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     forced_init(&sim->forced, sim);
     deform_init(&sim->deform, sim, isa);
     probes_init(&sim->probes, sim);
+    touch_init(&sim->touch, sim, isa);
     local_damping_init(&sim->local_damping, sim);
     spheres_init(&sim->spheres);
     periodic_init(&sim->spheres.periodic, job);
@@ -295,8 +298,10 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
                                     .ledger = sim->job->energy_ledger,
                                     .removals = job->n_removals > 0};
     checkpoint.n_more = deform_state_tables(sim, checkpoint.more);
+    checkpoint.n_more += touch_table(sim, &checkpoint.more[checkpoint.n_more]);
     int status = checkpoint_read(comm, checkpoint_path, &checkpoint);
     const bool fits = status == REPORT_FINISHED && fits_job(sim, &checkpoint) &&
+                      touch_fits(sim, &checkpoint.more[checkpoint.n_more - 1]) &&
                       restore_monitors(sim, &checkpoint) == REPORT_FINISHED &&
                       insertions_take_notes(&sim->insertions, &checkpoint.notes) &&
                       body_notes_take(&checkpoint.notes, &sim->bodies);
@@ -314,6 +319,7 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
     sim->step = checkpoint.step;
     sim->next_id = checkpoint.next_id;
     deform_state_restore(sim, checkpoint.more);
+    touch_restore(sim, &checkpoint.more[checkpoint.n_more - 1]);
     sim->spheres.n_all = sim->spheres.n_owned;
     sim->migrate.n_contacts = sim->migrate.contact_capacity = checkpoint.n_contacts;
     sim->migrate.contacts = checkpoint.contacts;
@@ -343,6 +349,7 @@ void simulation_destroy(struct simulation *sim)
     forced_clear(&sim->forced);
     probes_clear(&sim->probes);
     deform_clear(&sim->deform, sim->comm);
+    touch_clear(&sim->touch);
     local_damping_clear(&sim->local_damping);
     sections_clear(&sim->sections);
     contents_clear(&sim->contents);
@@ -443,6 +450,7 @@ static int write_checkpoint(struct simulation *sim, const struct run_folder *fol
                                     .removals = sim->removals.n > 0,
                                     .held = {sim, pairs_held, facets_held}};
     checkpoint.n_more = deform_state_tables(sim, checkpoint.more);
+    checkpoint.n_more += touch_table(sim, &checkpoint.more[checkpoint.n_more]);
     checkpoint.title = array_string(sim->job->title);
     checkpoint.job_text = array_string(job_text);
     checkpoint.n_contacts = contact_set_count(&sim->contacts, &sim->spheres);

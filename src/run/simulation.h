@@ -31,6 +31,7 @@
 #include "run/removal.h"
 #include "run/runtime.h"
 #include "run/sections.h"
+#include "run/touch.h"
 #include "run/watch.h"
 
 struct job;
@@ -85,6 +86,7 @@ struct simulation {
     struct forced forced;
     struct deform deform;
     struct probes probes;
+    struct touch touch;
     struct local_damping local_damping;
     struct sections sections;
     struct contents contents;

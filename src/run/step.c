@@ -151,6 +151,7 @@ static void begin(struct simulation *sim)
     bodies_place(&sim->bodies, sim->step, sim->dt);
     forced_begin(sim);
     deform_begin(sim);
+    touch_begin(sim);
     observe_gone(sim);
     if (!sim->gravity_varies)
         return;
@@ -177,6 +178,7 @@ void step_forces(struct simulation *sim)
     const double began = timer_now();
     facet_contacts_apply(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials, sim->dt,
                          sim->job->energy_ledger);
+    touch_apply(sim);
     runtime_end(runtime, RUNTIME_FACETS);
     pair_forces(sim);
     runtime_end(runtime, RUNTIME_PAIRS);
@@ -195,6 +197,7 @@ void step(struct simulation *sim)
     step_forces(sim);
     integrate(sim, spent, &bad);
     forced_move(sim);
+    touch_end(sim);
     deform_move(sim);
     sim->step++;
     sections_pass(&sim->sections, &sim->spheres);

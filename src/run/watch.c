@@ -309,6 +309,7 @@ void watch_contacts(struct watch *watch, const struct simulation *sim)
 {
     if (sim->step % WATCH_CONTACTS_EVERY != 0)
         return;
+    watch_elements(watch, sim);
     load_bodies(sim);
     watch->rate = 1.0 / find_critical(sim, sim->dt / sim->job->watch.step);
     watch->rounding = find_rounding(sim);
@@ -361,12 +362,13 @@ void watch_elements(struct watch *watch, const struct simulation *sim)
 {
     int body = -1;
     const double critical = deform_critical_step(sim, &body);
-    if (sim->dt <= critical)
+    if (sim->dt <= sim->job->watch.step * critical)
         return;
     fail(watch, WATCH_ELEMENT);
     snprintf(watch->what, sizeof watch->what,
-             "time.step = %.4g s is %.3g of the critical step of body '%.60s', %.4g s", sim->dt,
-             sim->dt / critical, sim->bodies.list[body].name, critical);
+             "time.step = %.4g s is %.3g of the critical step of body '%.60s' with its contacts, "
+             "%.4g s",
+             sim->dt, sim->dt / critical, sim->bodies.list[body].name, critical);
 }
 
 void watch_forced(struct watch *watch, const struct simulation *sim)

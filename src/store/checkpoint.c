@@ -146,9 +146,15 @@ static void describe_facet_contacts(struct table *table, bool full, bool ledger)
 }
 
 /* Rows of an id and fields, side by side. */
-static void describe_more(struct table *table, const struct checkpoint_more *more)
+static void describe_more(struct table *table, const struct checkpoint_more *more, bool full,
+                          bool ledger)
 {
     static const struct field id = {"id", "1", "counted over all bodies", FIELD_INT64, 1, 0};
+    if (more->contacts) {
+        describe_facet_contacts(table, full, ledger);
+        table->name = more->name;
+        return;
+    }
     table_init(table, more->name, sizeof(int64_t), compare_spheres);
     table_add_column(table, &id, 0);
     for (int f = 0; f < more->n_fields; f++) {
@@ -164,9 +170,9 @@ static int count_tables(const struct checkpoint *checkpoint)
 
 static void tables_init(struct table tables[N_TABLES], const struct checkpoint *checkpoint)
 {
-    for (int k = 0; k < checkpoint->n_more; k++)
-        describe_more(&tables[N_KINDS + k], &checkpoint->more[k]);
     const bool full = checkpoint->full, ledger = checkpoint->ledger;
+    for (int k = 0; k < checkpoint->n_more; k++)
+        describe_more(&tables[N_KINDS + k], &checkpoint->more[k], full, ledger);
     describe_spheres(&tables[SPHERES], checkpoint->removals);
     describe_contacts(&tables[CONTACTS], full, ledger);
     describe_facet_contacts(&tables[FACET_CONTACTS], full, ledger);
@@ -249,6 +255,10 @@ static void tables_to_write(struct table tables[N_TABLES], const struct comm *co
         table->collect = more->collect;
         table->from = more->from;
         table->n_ids = table->n_total = more->n_ids;
+        if (more->contacts) {
+            table->n_total = more->n_rows;
+            comm_sum_int(comm, &table->n_total, 1);
+        }
     }
 }
 
@@ -477,6 +487,8 @@ static void share_header(const struct comm *comm, struct checkpoint *checkpoint,
     checkpoint->n_monitors = (int)numbers[2];
     for (int k = 0; k < N_KINDS; k++)
         tables[k].n_total = numbers[3 + k];
+    for (int k = 0; k < checkpoint->n_more; k++)
+        comm_broadcast(comm, &tables[N_KINDS + k].n_total, sizeof tables->n_total);
     share_text(comm, &checkpoint->title);
     share_text(comm, &checkpoint->job_text);
     const size_t n = (size_t)checkpoint->n_monitors;
@@ -506,7 +518,7 @@ static char *read_header(const char *path, struct checkpoint *checkpoint,
     for (int k = 0; k < checkpoint->n_more; k++) {
         struct table *table = &tables[N_KINDS + k];
         table_measure(table, &h5);
-        if (table->n_total != checkpoint->more[k].n_ids)
+        if (!checkpoint->more[k].contacts && table->n_total != checkpoint->more[k].n_ids)
             h5_fail(&h5, "/%s: %lld rows in place of %lld", table->name,
                     (long long)table->n_total, (long long)checkpoint->more[k].n_ids);
     }
@@ -517,6 +529,17 @@ static char *read_header(const char *path, struct checkpoint *checkpoint,
     }
     h5_close(&h5);
     return h5.why;
+}
+
+static char *check_facet_contacts(const struct table *table)
+{
+    const struct facet_contact_record *facets = (const void *)table->records;
+    for (int64_t i = 0; i < table->n; i++)
+        if (facets[i].body < 0 || facets[i].feature < 0 ||
+            !(facets[i].history[CONTACT_RADIUS_LANE] > 0.0))
+            return array_format("/%s: that of %" PRId64 " makes no sense", table->name,
+                                facets[i].id);
+    return NULL;
 }
 
 /* Values that the program would stumble over.  Bodies, features and materials are counted by
@@ -535,13 +558,7 @@ static char *check_values(const struct table tables[N_TABLES], const struct sphe
             !(contacts[i].history[CONTACT_RADIUS_LANE] > 0.0))
             return array_format("/contacts: that of %" PRId64 " and %" PRId64 " makes no sense",
                                 contacts[i].first_id, contacts[i].second_id);
-    const struct facet_contact_record *facets = (const void *)tables[FACET_CONTACTS].records;
-    for (int64_t i = 0; i < tables[FACET_CONTACTS].n; i++)
-        if (facets[i].body < 0 || facets[i].feature < 0 ||
-            !(facets[i].history[CONTACT_RADIUS_LANE] > 0.0))
-            return array_format("/facet_contacts: that of %" PRId64 " makes no sense",
-                                facets[i].id);
-    return NULL;
+    return check_facet_contacts(&tables[FACET_CONTACTS]);
 }
 
 /* This rank's rows, verified.  Local. */
@@ -555,8 +572,7 @@ static char *read_rows(const struct comm *comm, const char *path, struct checkpo
     const struct comm alone = {.mpi = MPI_COMM_SELF, .rank = 0, .n_ranks = 1};
     for (int k = 0; k < checkpoint->n_more; k++) {
         struct table *table = &tables[N_KINDS + k];
-        table->n_total = checkpoint->more[k].n_ids;
-        table_read(table, &h5, &alone, table->n_total);
+        table_read(table, &h5, &alone, checkpoint->more[k].n_ids);
     }
     h5_close(&h5);
     return h5.why;
@@ -574,6 +590,7 @@ static void hand_over(struct checkpoint *checkpoint, struct table tables[N_TABLE
     for (int k = 0; k < checkpoint->n_more; k++) {
         struct table *table = &tables[N_KINDS + k];
         checkpoint->more[k].record_size = table->record_size;
+        checkpoint->more[k].n_rows = table->n;
         checkpoint->more[k].records = table->records;
         table->records = NULL;
     }
@@ -602,6 +619,9 @@ static char *read_file(const struct comm *comm, const char *path, struct checkpo
                      table_follow(&tables[FACET_CONTACTS], comm, &tables[SPHERES], 1)};
     place_spheres(checkpoint->spheres, &tables[SPHERES]);
     why = lost[0] != NULL ? lost[0] : check_values(tables, checkpoint->spheres);
+    for (int k = 0; k < checkpoint->n_more && why == NULL; k++)
+        if (checkpoint->more[k].contacts)
+            why = check_facet_contacts(&tables[N_KINDS + k]);
     if (why == NULL)
         why = lost[1];
     else

@@ -14,6 +14,7 @@
  *                    by (first_id, second_id)
  *   /facet_contacts/ id, body, feature, the same of their history; sorted
  *   /nodes/, /elements/  of a job with bodies that deform: their fields (solid/solid.h), by id
+ *   /node_contacts/  of one whose bodies touch bodies: as facet_contacts, of corners of skins
  *   /monitors/       names (one a line), sums (n x 5 int64: struct exact_sum as totals)
  *   /state/          where there is any: small named numbers (store/notes.h)
  *   /checksums/      under the same paths: CRC-32 (as zlib's) of each block of 256 rows; job,
@@ -21,8 +22,7 @@
  * Nothing in it depends on rank count, machine or clock (those are in the log and the series).
  *
  * Format versions count up.  Until there is a release a program reads its own alone and says
- * which one a file has; since version 4 what the tangential law loses is a total, not a
- * sphere's.
+ * which one a file has; since version 5 there are totals of what bodies lose that touch bodies.
  *
  * Writing: space is reserved and agreed on, the file is written under a temporary name, forced
  * to the disk, renamed, its folder forced to the disk.  Reading verifies every checksum.
@@ -44,7 +44,7 @@ struct run_folder;
 struct spheres;
 struct table;
 
-enum { CHECKPOINT_FORMAT_VERSION = 4, CHECKPOINT_NAME_SIZE = 64 };
+enum { CHECKPOINT_FORMAT_VERSION = 5, CHECKPOINT_NAME_SIZE = 64 };
 
 struct checkpoint_monitor {
     char name[CHECKPOINT_NAME_SIZE];
@@ -61,13 +61,16 @@ struct checkpoint_contacts {
                   struct facet_contact_record **records);
 };
 
-/* A further table, of what a job has besides spheres: rows of an id and fields, in
- * /NAME.  Reading gives all rows, in ascending order of ids 0 .. n_ids - 1, to every rank. */
+/* A further table, of what a job has besides spheres: rows of an id and fields, in /NAME, one
+ * for each id 0 .. n_ids - 1; or, of `contacts`, struct facet_contact_record, as many as there
+ * are.  Reading gives all rows, sorted, to every rank. */
 struct checkpoint_more {
     const char *name;
+    bool contacts;
     int n_fields;
     const struct field *fields;
     int64_t n_ids;
+    int64_t n_rows; /* of contacts: here, to write; in all, as read */
     /* To write: as in store/table.h; each row on exactly one rank. */
     void (*collect)(struct table *table, const void *from, int64_t begin, int64_t end);
     const void *from;
@@ -76,7 +79,7 @@ struct checkpoint_more {
     unsigned char *records;
 };
 
-enum { CHECKPOINT_MORE = 2 /* at most */ };
+enum { CHECKPOINT_MORE = 3 /* at most */ };
 
 struct checkpoint {
     const struct run_folder *folder; /* the run's that writes it, NULL: nobody's */

@@ -1,0 +1,20 @@
+/*
+ * Springs and dashpots of contacts as nodes of solids feel them, for the critical step (12.13):
+ * a light node between stiff elements and a stiff contact allows less than either.
+ */
+#ifndef TREMIE_RUN_NODE_SPRINGS_H
+#define TREMIE_RUN_NODE_SPRINGS_H
+
+struct simulation;
+
+/* Of each node, sums over the contacts that touch now. */
+struct node_springs {
+    double *stiffness; /* [N/m] */
+    double *damping;   /* [kg/s] */
+};
+
+/* Of all nodes of a body among those that deform.  Collective. */
+void node_springs_find(struct node_springs *springs, const struct simulation *sim, int deform);
+void node_springs_clear(struct node_springs *springs);
+
+#endif

@@ -1,0 +1,479 @@
+/* See touch.h. */
+#include "run/touch.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/report.h"
+#include "job/job.h"
+#include "model/restitution.h"
+#include "model/solid_ball.h"
+#include "run/simulation.h"
+#include "store/checkpoint.h"
+#include "store/table.h"
+
+/* A face of a ball's own body counts if it was farther than this at the start, in radii. */
+static const double APART = 2.0;
+
+static bool is_on(const struct touch *touch)
+{
+    return touch->n_balls > 0;
+}
+
+/* The body of a ball among those that deform, and its vertex. */
+struct where {
+    int deform, vertex;
+};
+
+static struct where find_ball(const struct deform *deform, int ball)
+{
+    int b = 0;
+    while (b + 1 < deform->n && deform->list[b + 1].first_ball <= ball)
+        b++;
+    return (struct where){b, ball - deform->list[b].first_ball};
+}
+
+/* ---- Building
+ * --------------------------------------------------------------------------------- */
+
+/* Springs of balls of material a on bodies of material b, of a width of 1 m.  (12.19) */
+static struct material_pair pair_of(const struct job *job, const struct job_pair *asked, int a,
+                                    int b)
+{
+    const double p = job->materials[a].young, q = job->materials[b].young;
+    const double beta = restitution_damping(asked->restitution), lesser = p < q ? p : q;
+    return (struct material_pair){
+        .linear = 1.0,
+        .normal = lesser,
+        .tangential = asked->tangential_ratio * lesser,
+        .damping = 2.0 * beta * sqrt(lesser),
+        .damping_ratio = sqrt(asked->tangential_ratio),
+        .friction = asked->friction,
+        .static_friction = asked->friction,
+    };
+}
+
+static void build_materials(struct materials *materials, const struct job *job)
+{
+    const size_t n = (size_t)job->n_materials;
+    materials->n = job->n_materials;
+    materials->pairs = array_allocate(n * n, sizeof *materials->pairs);
+    for (int k = 0; k < job->n_pairs; k++) {
+        const int a = job->pairs[k].a, b = job->pairs[k].b;
+        materials->pairs[a * job->n_materials + b] = pair_of(job, &job->pairs[k], a, b);
+        materials->pairs[b * job->n_materials + a] = pair_of(job, &job->pairs[k], b, a);
+    }
+}
+
+/* Was a face of the ball's own body apart from it at the start? */
+static bool was_apart(const struct mesh *mesh, int face, struct vec3 centre, double radius)
+{
+    const struct mesh_face *f = &mesh->faces[face];
+    struct vec3 middle = {0.0, 0.0, 0.0};
+    double reach2 = 0.0;
+    for (int k = 0; k < f->n; k++)
+        middle = vec3_axpy(middle, 1.0 / f->n, mesh->reference[f->vertices[k]]);
+    for (int k = 0; k < f->n; k++) {
+        const struct vec3 arm = vec3_sub(mesh->reference[f->vertices[k]], middle);
+        reach2 = vec3_dot(arm, arm) > reach2 ? vec3_dot(arm, arm) : reach2;
+    }
+    return vec3_norm(vec3_sub(centre, middle)) > sqrt(reach2) + APART * radius;
+}
+
+static struct vec3 reference_of(const struct deform_body *deform, const struct solid_ball *ball)
+{
+    const double *p = deform->solid.reference[ball->outer],
+                 *q = deform->solid.reference[ball->inner];
+    return (struct vec3){p[0] + ball->part * (q[0] - p[0]), p[1] + ball->part * (q[1] - p[1]),
+                         p[2] + ball->part * (q[2] - p[2])};
+}
+
+/* May a ball touch this feature? */
+static bool meets(const void *from, int sphere, int body, int feature)
+{
+    const struct simulation *sim = from;
+    const struct where where = find_ball(&sim->deform, sim->touch.owned[sphere]);
+    const struct deform_body *deform = &sim->deform.list[where.deform];
+    const struct solid_ball *ball = &deform->balls[where.vertex];
+    if (body != deform->body)
+        return true;
+    return sim->job->bodies[body].solid.touches.what == JOB_TOUCHES_ITSELF &&
+           was_apart(&sim->bodies.list[body].mesh, feature, reference_of(deform, ball),
+                     ball->radius);
+}
+
+static double mean_radius(const struct deform *deform)
+{
+    double sum = 0.0;
+    int n = 0;
+    for (int b = 0; b < deform->n; b++)
+        for (int k = 0; k < deform->list[b].n_balls; k++) {
+            sum += deform->list[b].balls[k].radius;
+            n += deform->list[b].balls[k].inner >= 0;
+        }
+    return sum / n;
+}
+
+void touch_init(struct touch *touch, const struct simulation *sim, enum isa isa)
+{
+    *touch = (struct touch){
+        .n_balls = sim->deform.n_balls, .n_changes = -1, .buffer = (double)INFINITY};
+    if (!is_on(touch))
+        return;
+    touch->buffer = 0.5 * mean_radius(&sim->deform);
+    const size_t n = (size_t)touch->n_balls;
+    touch->owned = array_allocate(n, sizeof *touch->owned);
+    touch->place = array_allocate(n, sizeof *touch->place);
+    touch->width = array_allocate(n, sizeof *touch->width);
+    touch->extents = array_allocate((size_t)sim->comm->n_ranks, sizeof *touch->extents);
+    spheres_init(&touch->spheres);
+    build_materials(&touch->materials, sim->job);
+    facet_contacts_init(&touch->contacts, sim->bodies.n, isa);
+    touch->contacts.width = touch->width;
+    touch->contacts.meets = meets;
+    touch->contacts.from = sim;
+}
+
+void touch_clear(struct touch *touch)
+{
+    if (!is_on(touch))
+        return;
+    free(touch->owned);
+    free(touch->place);
+    free(touch->width);
+    free(touch->extents);
+    free(touch->waiting);
+    spheres_clear(&touch->spheres);
+    facet_contacts_clear(&touch->contacts);
+    materials_clear(&touch->materials);
+    *touch = (struct touch){0};
+}
+
+/* ---- Who has which balls
+ * ----------------------------------------------------------------------- */
+
+static void put_ball(struct spheres *spheres, int i, const struct solid *solid,
+                     const struct solid_ball *ball)
+{
+    const double *p = solid_place(solid, ball->outer), *q = solid_place(solid, ball->inner);
+    const double *v = solid_velocity(solid, ball->outer),
+                 *w = solid_velocity(solid, ball->inner);
+    double *motion = spheres->motion[i].lane;
+    for (int x = 0; x < 3; x++) {
+        motion[x] = p[x] + ball->part * (q[x] - p[x]);
+        motion[4 + x] = v[x] + ball->part * (w[x] - v[x]);
+    }
+    spheres->force[i] = (struct sphere_row){{0.0}};
+}
+
+void touch_find_extents(struct simulation *sim)
+{
+    struct touch *touch = &sim->touch;
+    const size_t n = (size_t)sim->comm->n_ranks;
+    if (!is_on(touch))
+        return;
+    double *most = array_allocate(6 * n, sizeof *most);
+    for (size_t k = 0; k < 6 * n; k++)
+        most[k] = -1e300;
+    for (int b = 0; b < sim->deform.n; b++) {
+        const struct deform_body *deform = &sim->deform.list[b];
+        const struct solid *solid = &deform->solid;
+        for (int v = 0; v < deform->n_balls; v++) {
+            const struct solid_ball *ball = &deform->balls[v];
+            if (ball->inner < 0 || !solid->moves[ball->outer])
+                continue;
+            const double *p = solid_place(solid, ball->outer),
+                         *q = solid_place(solid, ball->inner);
+            const double reach = ball->radius + sim->body_allowance[deform->body];
+            double *extent = most + 6 * boxes_owner(&sim->boxes, p);
+            for (int x = 0; x < 3; x++) {
+                const double at = p[x] + ball->part * (q[x] - p[x]);
+                extent[x] = reach - at > extent[x] ? reach - at : extent[x];
+                extent[3 + x] = at + reach > extent[3 + x] ? at + reach : extent[3 + x];
+            }
+        }
+    }
+    comm_max(sim->comm, most, (int)(6 * n));
+    for (size_t q = 0; q < n; q++)
+        for (int x = 0; x < 3; x++) {
+            touch->extents[q].low[x] = -most[6 * q + (size_t)x];
+            touch->extents[q].high[x] = most[6 * q + 3 + (size_t)x];
+        }
+    free(most);
+}
+
+bool touch_reaches(const struct touch *touch, int rank, const double low[3],
+                   const double high[3])
+{
+    if (!is_on(touch))
+        return false;
+    const struct touch_extent *extent = &touch->extents[rank];
+    for (int x = 0; x < 3; x++)
+        if (low[x] > extent->high[x] || high[x] < extent->low[x])
+            return false;
+    return true;
+}
+
+/* Contacts of all ranks' balls, on each. */
+static struct facet_contact_record *gather_contacts(struct simulation *sim, int *n)
+{
+    const struct comm *comm = sim->comm;
+    const struct touch *touch = &sim->touch;
+    struct facet_contact_record *own = NULL;
+    int *sizes = array_allocate((size_t)comm->n_ranks, sizeof *sizes), before = 0;
+    const int n_own =
+        facet_contacts_records(&touch->contacts, &touch->spheres, 0, touch->n_balls, &own);
+    CHECK((size_t)n_own <= INT32_MAX / sizeof *own, "%d contacts of bodies", n_own);
+    comm_gather_all(comm, &(int){n_own * (int)sizeof *own}, sizes, sizeof *sizes);
+    *n = 0;
+    for (int q = 0; q < comm->n_ranks; q++) {
+        before = q == comm->rank ? *n : before;
+        *n += sizes[q] / (int)sizeof *own;
+    }
+    struct facet_contact_record *all = array_allocate((size_t)*n, sizeof *all);
+    if (n_own > 0)
+        memcpy(all + before, own, (size_t)n_own * sizeof *own);
+    comm_gather_parts(comm, all, sizes);
+    free(sizes);
+    free(own);
+    return all;
+}
+
+/* Lists the balls whose nodes are moved here. */
+static void list_balls(struct simulation *sim)
+{
+    struct touch *touch = &sim->touch;
+    struct spheres *spheres = &touch->spheres;
+    int n = 0;
+    for (int ball = 0; ball < touch->n_balls; ball++) {
+        const struct where where = find_ball(&sim->deform, ball);
+        const struct deform_body *deform = &sim->deform.list[where.deform];
+        const struct solid_ball *at = &deform->balls[where.vertex];
+        touch->place[ball] = -1;
+        if (at->inner < 0 || !deform->solid.moves[at->outer])
+            continue;
+        const double near = 1.0 - at->part, *mass = deform->solid.mass;
+        const double inverse_mass =
+            near * near / mass[at->outer] + at->part * at->part / mass[at->inner];
+        spheres_reserve(spheres, n + 1);
+        touch->owned[n] = ball;
+        touch->place[ball] = n;
+        touch->width[n] =
+            sim->job->bodies[deform->body].solid.touches.stiffness * sqrt(at->area);
+        spheres->id[n] = ball;
+        spheres->material[n] = sim->bodies.list[deform->body].material;
+        spheres->motion[n] =
+            (struct sphere_row){{0.0, 0.0, 0.0, at->radius, 0.0, 0.0, 0.0, at->radius}};
+        spheres->spin[n] =
+            (struct sphere_row){{0.0, 0.0, 0.0, 1.0 / at->radius, 0.0, 0.0, 0.0, inverse_mass}};
+        n++;
+    }
+    spheres->n_owned = spheres->n_all = n;
+    spheres_reserve(spheres, n);
+    spheres_pad(spheres);
+}
+
+/* Gives contacts to the lists of those who have their balls now. */
+static void take_contacts(struct touch *touch, int n,
+                          const struct facet_contact_record *records)
+{
+    int *spheres = array_allocate((size_t)n, sizeof *spheres);
+    for (int r = 0; r < n; r++)
+        spheres[r] = touch->place[records[r].id];
+    facet_contacts_forget(&touch->contacts);
+    facet_contacts_restore(&touch->contacts, n, records, spheres);
+    free(spheres);
+}
+
+void touch_search(struct simulation *sim, bool all_pairs)
+{
+    struct touch *touch = &sim->touch;
+    int64_t n_changes = 0;
+    if (!is_on(touch))
+        return;
+    for (int b = 0; b < sim->deform.n; b++)
+        n_changes += sim->deform.list[b].share.n_changes;
+    if (n_changes != touch->n_changes) {
+        int n = touch->n_waiting;
+        struct facet_contact_record *records =
+            touch->waiting != NULL ? touch->waiting : gather_contacts(sim, &n);
+        list_balls(sim);
+        take_contacts(touch, n, records);
+        free(records);
+        touch->waiting = NULL;
+        touch->n_waiting = 0;
+        touch->n_changes = n_changes;
+    }
+    touch_begin(sim);
+    for (int i = 0; i < touch->spheres.n_owned; i++) {
+        const struct where where = find_ball(&sim->deform, touch->owned[i]);
+        touch->spheres.allowance[i] = sim->body_allowance[sim->deform.list[where.deform].body];
+    }
+    facet_contacts_search(&touch->contacts, &touch->spheres, &sim->bodies, sim->body_allowance,
+                          all_pairs);
+}
+
+/* ---- The step
+ * --------------------------------------------------------------------------------- */
+
+void touch_begin(struct simulation *sim)
+{
+    struct touch *touch = &sim->touch;
+    for (int i = 0; i < touch->spheres.n_owned; i++) {
+        const struct where where = find_ball(&sim->deform, touch->owned[i]);
+        const struct deform_body *deform = &sim->deform.list[where.deform];
+        put_ball(&touch->spheres, i, &deform->solid, &deform->balls[where.vertex]);
+    }
+}
+
+/* What bodies feel of balls goes to what they feel of spheres. */
+static void merge_loads(struct simulation *sim)
+{
+    for (int b = 0; b < sim->bodies.n; b++) {
+        struct body_load *from = &sim->touch.contacts.loads[b], *to = &sim->facets.loads[b];
+        for (int x = 0; x < 3; x++) {
+            exact_sum_merge(&to->force[x], &from->force[x]);
+            exact_sum_merge(&to->torque[x], &from->torque[x]);
+        }
+        exact_sum_merge(&to->work, &from->work);
+        exact_sum_merge(&to->wound, &from->wound);
+        *from = (struct body_load){0};
+    }
+}
+
+/* Gives what a ball feels to its two nodes and to what its body feels. */
+static void push_ball(struct simulation *sim, int i)
+{
+    const struct where where = find_ball(&sim->deform, sim->touch.owned[i]);
+    const struct deform_body *deform = &sim->deform.list[where.deform];
+    const struct solid_ball *ball = &deform->balls[where.vertex];
+    const struct body_skin *skin = sim->bodies.list[deform->body].skin;
+    struct body_load *load = &sim->facets.loads[deform->body];
+    const double *f = sim->touch.spheres.force[i].lane;
+    const double *c = sim->touch.spheres.motion[i].lane;
+    if (f[0] == 0.0 && f[1] == 0.0 && f[2] == 0.0)
+        return;
+    for (int x = 0; x < 3; x++) {
+        const int y = (x + 1) % 3, z = (x + 2) % 3;
+        struct exact_sum *outer = &skin->force[where.vertex][x];
+        exact_sum_add(outer, f[x]);
+        exact_sum_add(outer, -exact_sum_add(&skin->force[deform->inner[where.vertex]][x],
+                                            ball->part * f[x]));
+        exact_sum_add(&load->force[x], f[x]);
+        exact_sum_add(&load->torque[x], c[y] * f[z] - c[z] * f[y]);
+    }
+}
+
+/* A ball whose centre is through the surface would feel it no more. */
+static const double THROUGH = 0.9;
+
+static void watch_depth(struct simulation *sim)
+{
+    const struct touch *touch = &sim->touch;
+    if (!(touch->contacts.overlap_max > THROUGH) || sim->deform.failed)
+        return;
+    for (int k = 0; k < touch->contacts.n; k++) {
+        const struct facet_contact *contact = &touch->contacts.list[k];
+        const int i = contact->sphere;
+        if (!(contact->overlap > THROUGH * sphere_radius(&touch->spheres, i)))
+            continue;
+        const struct where where = find_ball(&sim->deform, touch->owned[i]);
+        const struct deform_body *deform = &sim->deform.list[where.deform];
+        const double *at = solid_place(&deform->solid, deform->balls[where.vertex].outer);
+        sim->deform.failed = true;
+        snprintf(sim->watch.what, sizeof sim->watch.what,
+                 "node %d of body '%.48s' at (%.5g, %.5g, %.5g) m is pressed %.3g m into body "
+                 "'%.48s'; its contact reaches %.3g m",
+                 deform->balls[where.vertex].outer + 1, sim->bodies.list[deform->body].name,
+                 at[0], at[1], at[2], contact->overlap, sim->bodies.list[contact->body].name,
+                 sphere_radius(&touch->spheres, i));
+        return;
+    }
+}
+
+void touch_apply(struct simulation *sim)
+{
+    struct touch *touch = &sim->touch;
+    if (!is_on(touch))
+        return;
+    facet_contacts_apply(&touch->contacts, &touch->spheres, &sim->bodies, &touch->materials,
+                         sim->dt, sim->job->energy_ledger);
+    merge_loads(sim);
+    for (int i = 0; i < touch->spheres.n_owned; i++)
+        push_ball(sim, i);
+    watch_depth(sim);
+}
+
+void touch_end(struct simulation *sim)
+{
+    for (int i = 0; sim->job->energy_ledger && i < sim->touch.spheres.n_owned; i++) {
+        const double *force = sim->touch.spheres.force[i].lane;
+        exact_sum_add(&sim->observe.totals[OBSERVE_TOUCH_FRICTION], force[3]);
+        exact_sum_add(&sim->observe.totals[OBSERVE_TOUCH_DAMPING], force[7]);
+    }
+}
+
+void touch_energies(const struct simulation *sim, struct exact_sum *normal,
+                    struct exact_sum *springs, struct exact_sum *friction,
+                    struct exact_sum *damping)
+{
+    const struct touch *touch = &sim->touch;
+    if (!is_on(touch))
+        return;
+    facet_contacts_elastic_energy(&touch->contacts, &touch->spheres, &sim->bodies,
+                                  &touch->materials, normal, springs);
+    for (int i = 0; i < touch->spheres.n_owned; i++) {
+        exact_sum_add(friction, touch->spheres.force[i].lane[3]);
+        exact_sum_add(damping, 0.5 * touch->spheres.force[i].lane[7]);
+    }
+}
+
+/* ---- State
+ * ------------------------------------------------------------------------------------ */
+
+static void collect(struct table *table, const void *from, int64_t begin, int64_t end)
+{
+    const struct touch *touch = &((const struct simulation *)from)->touch;
+    struct facet_contact_record *records = NULL;
+    const int n =
+        facet_contacts_records(&touch->contacts, &touch->spheres, begin, end, &records);
+    table_append(table, records, n);
+    free(records);
+}
+
+int touch_table(const struct simulation *sim, struct checkpoint_more *table)
+{
+    if (!is_on(&sim->touch))
+        return 0;
+    *table = (struct checkpoint_more){.name = "node_contacts",
+                                      .contacts = true,
+                                      .n_ids = sim->touch.n_balls,
+                                      .n_rows = facet_contacts_count(&sim->touch.contacts),
+                                      .collect = collect,
+                                      .from = sim};
+    return 1;
+}
+
+bool touch_fits(const struct simulation *sim, const struct checkpoint_more *table)
+{
+    const struct facet_contact_record *records = (const void *)table->records;
+    bool fits = true;
+    for (int64_t r = 0; is_on(&sim->touch) && fits && r < table->n_rows; r++) {
+        fits = records[r].body < sim->bodies.n;
+        if (fits)
+            fits =
+                records[r].feature < mesh_n_features(&sim->bodies.list[records[r].body].mesh);
+    }
+    return fits;
+}
+
+void touch_restore(struct simulation *sim, struct checkpoint_more *table)
+{
+    if (!is_on(&sim->touch))
+        return;
+    sim->touch.waiting = (void *)table->records;
+    sim->touch.n_waiting = (int)table->n_rows;
+    table->records = NULL;
+}
