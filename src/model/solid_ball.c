@@ -8,8 +8,8 @@
 #include "model/mesh.h"
 #include "model/solid_mesh.h"
 
-/* A ball's radius over the depth of the inner node, or over the way to the nearest one if that is
- * less: deep enough for what a node may be pressed in, and within its elements. */
+/* A ball's radius over the depth of the inner node, or over the way to the nearest one if that
+ * is less: deep enough for what a node may be pressed in, and within its elements. */
 static const double PART = 1.0 / 3.0;
 
 /* Elements at each node: list[begin[i] .. begin[i + 1] - 1]. */

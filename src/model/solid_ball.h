@@ -1,10 +1,10 @@
 /*
  * Balls below the surface of a solid, by which its nodes touch other bodies.
  *
- * A ball lies below each vertex of the skin, on the line to a node farther in, and is tangent to
- * the faces around the vertex.  So bodies touch when their surfaces do, a ball can be pressed
- * in as deep as its radius, and where it is depends linearly on two nodes, which therefore take
- * what it feels.  Edges and corners are round by as much.
+ * A ball lies below each vertex of the skin, on the line to a node farther in, and is tangent
+ * to the faces around the vertex.  So bodies touch when their surfaces do, a ball can be
+ * pressed in as deep as its radius, and where it is depends linearly on two nodes, which
+ * therefore take what it feels.  Edges and corners are round by as much.
  */
 #ifndef TREMIE_MODEL_SOLID_BALL_H
 #define TREMIE_MODEL_SOLID_BALL_H

@@ -365,10 +365,11 @@ void watch_elements(struct watch *watch, const struct simulation *sim)
     if (sim->dt <= sim->job->watch.step * critical)
         return;
     fail(watch, WATCH_ELEMENT);
-    snprintf(watch->what, sizeof watch->what,
-             "time.step = %.4g s is %.3g of the critical step of body '%.60s' with its contacts, "
-             "%.4g s",
-             sim->dt, sim->dt / critical, sim->bodies.list[body].name, critical);
+    snprintf(
+        watch->what, sizeof watch->what,
+        "time.step = %.4g s is %.3g of the critical step of body '%.60s' with its contacts, "
+        "%.4g s",
+        sim->dt, sim->dt / critical, sim->bodies.list[body].name, critical);
 }
 
 void watch_forced(struct watch *watch, const struct simulation *sim)
