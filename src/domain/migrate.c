@@ -213,20 +213,28 @@ void migrate_find_moved(struct migrate *migrate, const struct spheres *spheres)
     }
 }
 
-void migrate_forget(struct migrate *migrate)
+void migrate_forget_before(struct migrate *migrate)
 {
-    lookup_clear(&migrate->lookup);
+    if (migrate->n_contacts == 0)
+        lookup_clear(&migrate->lookup);
     free(migrate->id_before);
-    free(migrate->moved);
     free(migrate->owner);
     free(migrate->leaves);
+    migrate->id_before = NULL;
+    migrate->owner = NULL;
+    migrate->leaves = NULL;
+}
+
+void migrate_forget(struct migrate *migrate)
+{
+    migrate_forget_before(migrate);
+    lookup_clear(&migrate->lookup);
+    free(migrate->moved);
     free(migrate->contacts);
     free(migrate->facets);
     migrate->contacts = NULL;
     migrate->facets = NULL;
     migrate->contact_capacity = migrate->facet_capacity = 0;
-    migrate->id_before = NULL;
-    migrate->moved = migrate->owner = NULL;
-    migrate->leaves = NULL;
+    migrate->moved = NULL;
     migrate->before_capacity = 0;
 }

@@ -61,6 +61,8 @@ void migrate_spheres(struct migrate *migrate, const struct comm *comm,
 /* Completes moved[] once the new ghosts are here; the lookup then finds all spheres here.
  * Local. */
 void migrate_find_moved(struct migrate *migrate, const struct spheres *spheres);
+/* Gives back what moved[] and the records that arrived make superfluous.  Local. */
+void migrate_forget_before(struct migrate *migrate);
 /* Gives back the memory of what only matters during a redistribution: lookup, moved[] and what
  * was before.  Local. */
 void migrate_forget(struct migrate *migrate);

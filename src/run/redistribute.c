@@ -250,6 +250,7 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
     const bool moves =
         sim->comm->n_ranks > 1 || renew || removed != NULL || born || sim->spheres.periodic.any;
     update_subdomains(sim, moves, renew, removed, &sim->contacts);
+    migrate_forget_before(&sim->migrate);
     runtime_end(&sim->runtime, RUNTIME_REDISTRIBUTE);
     const int n_strange = search(sim, moves ? sim->migrate.moved : NULL, removed != NULL);
     CHECK(n_strange == 0, "%d contacts of spheres that are not here", n_strange);
@@ -268,6 +269,7 @@ bool redistribute_first(struct simulation *sim)
         repartition(sim);
     boxes_update(&sim->boxes);
     update_subdomains(sim, true, true, NULL, NULL);
+    spheres_fit(&sim->spheres);
     const int n_strange = search(sim, sim->migrate.moved, false);
     migrate_forget(&sim->migrate);
     return comm_agree(sim->comm, n_strange > 0) == 0;
