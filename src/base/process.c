@@ -2,6 +2,7 @@
 #include "base/process.h"
 
 #include <inttypes.h>
+#include <malloc.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -45,6 +46,13 @@ double process_memory(void)
     if (getrlimit(RLIMIT_AS, &limit) != 0 || limit.rlim_cur == RLIM_INFINITY)
         return machine;
     return (double)limit.rlim_cur < machine ? (double)limit.rlim_cur : machine;
+}
+
+void process_return_memory(void)
+{
+    enum { LARGE = 1 << 20, HEAP_END = 1 << 24 /* that is kept, for what comes and goes */ };
+    (void)mallopt(M_MMAP_THRESHOLD, LARGE); /* at worst all stays as it is */
+    (void)mallopt(M_TRIM_THRESHOLD, HEAP_END);
 }
 
 void process_job(char *text, size_t size)

@@ -17,6 +17,10 @@ double process_age(int64_t id);
 /* Memory that processes of this machine can have, or this one is allowed to [bytes]. */
 double process_memory(void);
 
+/* From now on large pieces of memory go back to the machine as soon as they are freed.  Else
+ * the C library, once some were freed, takes later ones from a heap in which holes stay. */
+void process_return_memory(void);
+
 /* What a scheduler calls the job that this process belongs to, like "slurm 4711"; "" without
  * one. */
 void process_job(char *text, size_t size);

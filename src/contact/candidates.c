@@ -10,16 +10,24 @@
 const double candidates_level_bound[CANDIDATES_LEVELS] = {1.3,  2.6,  5.2,  10.4,
                                                           20.8, 41.6, 83.2, 1e300};
 
-/* Gives back what only a search needs. */
-static void forget_search(struct candidates *candidates)
+/* Give back what only a search needs. */
+static void forget_found(struct candidates *candidates)
 {
     free(candidates->found_low);
     free(candidates->found_high);
+    candidates->found_low = candidates->found_high = NULL;
+    candidates->found_capacity = 0;
+}
+
+static void forget_members(struct candidates *candidates)
+{
     free(candidates->members);
     free(candidates->tags);
-    candidates->found_low = candidates->found_high = NULL;
     candidates->members = candidates->tags = NULL;
-    candidates->found_capacity = 0;
+}
+
+static void forget_grids(struct candidates *candidates)
+{
     for (int l = 0; l < CANDIDATES_LEVELS; l++)
         cell_grid_clear(&candidates->grid[l]);
 }
@@ -30,7 +38,9 @@ void candidates_clear(struct candidates *candidates)
     free(candidates->place);
     free(candidates->at);
     free(candidates->row_end);
-    forget_search(candidates);
+    forget_found(candidates);
+    forget_members(candidates);
+    forget_grids(candidates);
     *candidates = (struct candidates){0};
 }
 
@@ -181,6 +191,7 @@ static void fill_levels(struct candidates *candidates, const struct spheres *sph
                        n > 0 ? 2.0000001 * reach_max : 1.0);
         bound_before = bound;
     }
+    forget_members(candidates);
 }
 
 static int find_by_grids(struct candidates *candidates, const struct spheres *spheres)
@@ -192,6 +203,7 @@ static int find_by_grids(struct candidates *candidates, const struct spheres *sp
         for (int lower = 0; lower < l; lower++)
             n = scan_across(candidates, &candidates->grid[l], &candidates->grid[lower], n);
     }
+    forget_grids(candidates);
     return n;
 }
 
@@ -245,15 +257,12 @@ void candidates_search(struct candidates *candidates, const struct spheres *sphe
                        bool all_pairs)
 {
     number_places(candidates, spheres);
+    free(candidates->second); /* before the search, whose greatest need of memory it adds to */
+    candidates->second = NULL;
     reserve_found(candidates, candidates->n + candidates->n / 16); /* about as many as last */
     const int n_found =
         all_pairs ? find_all_pairs(candidates, spheres) : find_by_grids(candidates, spheres);
-    if (n_found + CANDIDATES_AHEAD > candidates->capacity) {
-        candidates->capacity = (int)array_capacity((size_t)candidates->capacity,
-                                                   (size_t)n_found + CANDIDATES_AHEAD);
-        free(candidates->second);
-        candidates->second = array_allocate_rows((size_t)candidates->capacity, sizeof(int));
-    }
+    candidates->second = array_allocate_rows((size_t)n_found + CANDIDATES_AHEAD, sizeof(int));
     sort_found(candidates, n_found, spheres->n_all);
-    forget_search(candidates);
+    forget_found(candidates);
 }

@@ -28,7 +28,7 @@ enum {
 extern const double candidates_level_bound[CANDIDATES_LEVELS];
 
 struct candidates {
-    int n, capacity;
+    int n;
     int *second;  /* storage indices, row by row, sorted by their places */
     int *place;   /* place in canonical order of a storage index */
     int *at;      /* storage index at a place */

@@ -16,24 +16,18 @@ void cell_grid_clear(struct cell_grid *grid)
     free(grid->tag);
     free(grid->cell);
     free(grid->begin);
-    free(grid->scratch);
     *grid = (struct cell_grid){0};
 }
 
-static void reserve(struct cell_grid *grid, int n)
+static void allocate(struct cell_grid *grid, int n)
 {
-    if (n <= grid->capacity)
-        return;
-    cell_grid_clear(grid);
-    const size_t capacity = array_capacity(0, (size_t)n + (size_t)n / 4);
-    grid->capacity = (int)capacity;
-    grid->x = array_allocate_rows(capacity, sizeof(double));
-    grid->y = array_allocate_rows(capacity, sizeof(double));
-    grid->z = array_allocate_rows(capacity, sizeof(double));
-    grid->reach = array_allocate_rows(capacity, sizeof(double));
-    grid->tag = array_allocate_rows(capacity, sizeof(int));
-    grid->cell = array_allocate_rows(capacity, sizeof(int));
-    grid->scratch = array_allocate_rows(capacity, sizeof(int));
+    grid->n = n;
+    grid->x = array_allocate_rows((size_t)n, sizeof(double));
+    grid->y = array_allocate_rows((size_t)n, sizeof(double));
+    grid->z = array_allocate_rows((size_t)n, sizeof(double));
+    grid->reach = array_allocate_rows((size_t)n, sizeof(double));
+    grid->tag = array_allocate_rows((size_t)n, sizeof(int));
+    grid->cell = array_allocate_rows((size_t)n, sizeof(int));
 }
 
 /* Chooses cells for the extent [low, high]: a few stray points far away must not make
@@ -59,11 +53,7 @@ static void choose_cells(struct cell_grid *grid, const double low[3], const doub
         grid->size[k] = (int)count[k] + 3;
         grid->n_cells *= grid->size[k];
     }
-    if (grid->n_cells + 2 > grid->cell_capacity) {
-        free(grid->begin);
-        grid->cell_capacity = (int)array_capacity(0, (size_t)grid->n_cells * 5 / 4 + 2);
-        grid->begin = array_allocate_rows((size_t)grid->cell_capacity, sizeof(int));
-    }
+    grid->begin = array_allocate_rows((size_t)grid->n_cells + 2, sizeof(int));
 }
 
 int cell_grid_along(const struct cell_grid *grid, int k, double x)
@@ -77,8 +67,7 @@ int cell_grid_along(const struct cell_grid *grid, int k, double x)
 void cell_grid_fill(struct cell_grid *grid, const struct spheres *spheres, int n,
                     const int *members, const int *tags, double width)
 {
-    reserve(grid, n);
-    grid->n = n;
+    allocate(grid, n);
     double low[3] = {0.0, 0.0, 0.0}, high[3] = {0.0, 0.0, 0.0};
     grid->reach_max = 0.0;
     for (int p = 0; p < n; p++) {
@@ -92,13 +81,13 @@ void cell_grid_fill(struct cell_grid *grid, const struct spheres *spheres, int n
     }
     choose_cells(grid, low, high, width);
     int *begin = grid->begin;
-    memset(begin, 0, ((size_t)grid->n_cells + 1) * sizeof *begin);
+    int *cells = array_allocate_rows((size_t)n, sizeof *cells); /* in the caller's order */
     for (int p = 0; p < n; p++) {
         const double *x = sphere_position(spheres, members[p]);
         const int cx = cell_grid_along(grid, 0, x[0]), cy = cell_grid_along(grid, 1, x[1]);
         const int cz = cell_grid_along(grid, 2, x[2]);
-        grid->scratch[p] = (cz * grid->size[1] + cy) * grid->size[0] + cx;
-        begin[grid->scratch[p]]++;
+        cells[p] = (cz * grid->size[1] + cy) * grid->size[0] + cx;
+        begin[cells[p]]++;
     }
     for (int c = 0, sum = 0; c <= grid->n_cells; c++) {
         const int count = c < grid->n_cells ? begin[c] : 0;
@@ -106,15 +95,16 @@ void cell_grid_fill(struct cell_grid *grid, const struct spheres *spheres, int n
         sum += count;
     }
     for (int p = 0; p < n; p++) {
-        const int place = begin[grid->scratch[p]]++;
+        const int place = begin[cells[p]]++;
         const double *x = sphere_position(spheres, members[p]);
         grid->x[place] = x[0];
         grid->y[place] = x[1];
         grid->z[place] = x[2];
         grid->reach[place] = sphere_reach(spheres, members[p]);
         grid->tag[place] = tags[p];
-        grid->cell[place] = grid->scratch[p];
+        grid->cell[place] = cells[p];
     }
+    free(cells);
     memmove(begin + 1, begin, (size_t)grid->n_cells * sizeof *begin);
     begin[0] = 0;
 }

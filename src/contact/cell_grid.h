@@ -11,14 +11,13 @@
 struct spheres;
 
 struct cell_grid {
-    int n, capacity;
+    int n;
     double *x, *y, *z; /* [m], in cell order */
     double *reach;     /* [m] */
     int *tag;          /* the caller's number of the point */
     int *cell;         /* cell of the point at this place */
     int *begin;        /* first place of a cell; n_cells + 1 entries */
-    int *scratch;      /* cell of each point in the caller's order */
-    int n_cells, cell_capacity;
+    int n_cells;
     int size[3];      /* cells a direction, frame included */
     double low[3];    /* corner of the first cell within the frame [m] */
     double width;     /* [m] */
@@ -26,8 +25,9 @@ struct cell_grid {
 };
 
 void cell_grid_clear(struct cell_grid *grid);
-/* Files n spheres, members[] by storage index, with radius and allowance as reach, in cells at
- * least `width` wide (wider where that would give many more cells than spheres). */
+/* Files in a cleared grid n spheres, members[] by storage index, with radius and allowance as
+ * reach, in cells at least `width` wide (wider where that would give many more cells than
+ * spheres). */
 void cell_grid_fill(struct cell_grid *grid, const struct spheres *spheres, int n,
                     const int *members, const int *tags, double width);
 /* Index of the cell (within the frame) along direction k; outside the grid it is the

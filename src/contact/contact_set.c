@@ -375,6 +375,7 @@ void contact_set_prune(struct contact_set *contacts, const struct candidates *ca
     reserve_rows(contacts, spheres->n_all);
     choose_allowances(spheres, inner, base, horizon, keep_all);
     select_pairs(contacts, candidates, spheres, inner, keep_all);
+    free(inner);
     pad_pairs(contacts, spheres->n_all);
     begin_sources(contacts);
     if (moved == NULL && !spheres->periodic.any)
@@ -383,7 +384,6 @@ void contact_set_prune(struct contact_set *contacts, const struct candidates *ca
         find_sources(contacts, candidates, spheres, moved);
     carry_history(contacts);
     forget_before(contacts);
-    free(inner);
 }
 
 /* The two of an entry by their ids. */

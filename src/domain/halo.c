@@ -288,6 +288,7 @@ static void receive_ghosts(struct halo *halo, struct spheres *spheres)
         }
     }
     spheres->n_all = n;
+    comm_mail_forget(&halo->mail);
 }
 
 /* Brings the ghosts into canonical order and tells the peers' lists where they went. */

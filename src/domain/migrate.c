@@ -90,6 +90,16 @@ static int destination(const struct migrate *migrate, const struct spheres *sphe
     return migrate->owner[i];
 }
 
+/* To one or two ranks, or none (-1). */
+static void pack_contact(struct migrate *migrate, const struct contact_record *record,
+                         int first, int second)
+{
+    if (first >= 0)
+        pack_item(&migrate->mail, first, ITEM_CONTACT, record, sizeof *record);
+    if (second >= 0 && second != first)
+        pack_item(&migrate->mail, second, ITEM_CONTACT, record, sizeof *record);
+}
+
 static void pack_records(struct migrate *migrate, const struct spheres *spheres,
                          const unsigned char *removed)
 {
@@ -98,10 +108,7 @@ static void pack_records(struct migrate *migrate, const struct spheres *spheres,
         const struct contact_record *record = &migrate->contacts[r];
         const int first = destination(migrate, spheres, record->first_id, removed);
         const int second = destination(migrate, spheres, record->second_id, removed);
-        if (first >= 0)
-            pack_item(&migrate->mail, first, ITEM_CONTACT, record, sizeof *record);
-        if (second >= 0 && second != first)
-            pack_item(&migrate->mail, second, ITEM_CONTACT, record, sizeof *record);
+        pack_contact(migrate, record, first, second);
     }
     for (int r = 0; r < migrate->n_facets; r++) {
         const struct facet_contact_record *record = &migrate->facets[r];
@@ -213,20 +220,46 @@ void migrate_find_moved(struct migrate *migrate, const struct spheres *spheres)
     }
 }
 
-void migrate_forget(struct migrate *migrate)
+void migrate_follow(struct migrate *migrate, const struct comm *comm, int n,
+                    const struct contact_record *records)
 {
-    lookup_clear(&migrate->lookup);
+    if (migrate->before.ids == NULL)
+        lookup_fill(&migrate->before, migrate->n_before, migrate->id_before);
+    comm_mail_begin(&migrate->mail);
+    for (int r = 0; r < n; r++) {
+        const int i = lookup_find(&migrate->before, records[r].first_id);
+        const int j = lookup_find(&migrate->before, records[r].second_id);
+        pack_contact(migrate, &records[r], i < 0 ? -1 : migrate->owner[i],
+                     j < 0 ? -1 : migrate->owner[j]);
+    }
+    comm_mail_exchange(&migrate->mail, comm);
+    unpack(migrate, NULL, 0);
+    comm_mail_forget(&migrate->mail);
+}
+
+void migrate_forget_before(struct migrate *migrate)
+{
+    if (migrate->n_contacts == 0)
+        lookup_clear(&migrate->lookup);
+    lookup_clear(&migrate->before);
     free(migrate->id_before);
-    free(migrate->moved);
     free(migrate->owner);
     free(migrate->leaves);
+    migrate->id_before = NULL;
+    migrate->owner = NULL;
+    migrate->leaves = NULL;
+}
+
+void migrate_forget(struct migrate *migrate)
+{
+    migrate_forget_before(migrate);
+    lookup_clear(&migrate->lookup);
+    free(migrate->moved);
     free(migrate->contacts);
     free(migrate->facets);
     migrate->contacts = NULL;
     migrate->facets = NULL;
     migrate->contact_capacity = migrate->facet_capacity = 0;
-    migrate->id_before = NULL;
-    migrate->moved = migrate->owner = NULL;
-    migrate->leaves = NULL;
+    migrate->moved = NULL;
     migrate->before_capacity = 0;
 }

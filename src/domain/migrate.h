@@ -26,9 +26,10 @@ struct spheres;
 struct migrate {
     struct comm_mail mail;
     struct lookup lookup;
-    /* Records on their way: filled by the caller (restart) or by migrate_spheres: pair contacts
-     * of spheres that leave, all facet contacts (storage indices may change).  Afterwards what
-     * arrived. */
+    struct lookup before; /* of what was here before the move: for migrate_follow() alone */
+    /* Records on their way, filled by migrate_spheres or (facets at first) by the caller: pair
+     * contacts of spheres that leave, all facet contacts (storage indices may change).
+     * Afterwards what arrived. */
     int n_contacts, contact_capacity, n_facets, facet_capacity;
     struct contact_record *contacts;
     struct facet_contact_record *facets;
@@ -61,6 +62,12 @@ void migrate_spheres(struct migrate *migrate, const struct comm *comm,
 /* Completes moved[] once the new ghosts are here; the lookup then finds all spheres here.
  * Local. */
 void migrate_find_moved(struct migrate *migrate, const struct spheres *spheres);
+/* Records of pair contacts that came late: sends each where the spheres went that were owned
+ * here before the last migration; `contacts` then holds what arrived.  Collective. */
+void migrate_follow(struct migrate *migrate, const struct comm *comm, int n,
+                    const struct contact_record *records);
+/* Gives back what moved[] and the records that arrived make superfluous.  Local. */
+void migrate_forget_before(struct migrate *migrate);
 /* Gives back the memory of what only matters during a redistribution: lookup, moved[] and what
  * was before.  Local. */
 void migrate_forget(struct migrate *migrate);

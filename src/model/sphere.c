@@ -75,11 +75,8 @@ void spheres_clear(struct spheres *spheres)
     *spheres = (struct spheres){0};
 }
 
-void spheres_reserve(struct spheres *spheres, int n)
+static void resize(struct spheres *spheres, size_t capacity)
 {
-    if (spheres->motion != NULL && n <= spheres->capacity)
-        return;
-    const size_t capacity = array_capacity((size_t)spheres->capacity, (size_t)n);
     const size_t was = spheres->motion != NULL ? (size_t)spheres->capacity + SPHERE_DUMMIES : 0;
     const size_t now = capacity + SPHERE_DUMMIES;
 #define RESIZE(member)                                                                         \
@@ -103,6 +100,19 @@ void spheres_reserve(struct spheres *spheres, int n)
 #undef RESIZE
 #undef RESIZE_ROWS
     spheres->capacity = (int)capacity;
+}
+
+void spheres_reserve(struct spheres *spheres, int n)
+{
+    if (spheres->motion == NULL || n > spheres->capacity)
+        resize(spheres, array_capacity((size_t)spheres->capacity, (size_t)n));
+}
+
+void spheres_fit(struct spheres *spheres)
+{
+    const int enough = spheres->n_all + spheres->n_all / 32;
+    if (enough < spheres->capacity)
+        resize(spheres, (size_t)enough);
 }
 
 struct field_view sphere_view(const struct spheres *spheres, int field)

@@ -70,6 +70,8 @@ void spheres_init(struct spheres *spheres);
 void spheres_clear(struct spheres *spheres);
 /* Room for n spheres (and the dummies); contents kept. */
 void spheres_reserve(struct spheres *spheres, int n);
+/* Gives back room that is not needed, but for a few more; contents kept. */
+void spheres_fit(struct spheres *spheres);
 /* Where a field of the table lies. */
 struct field_view sphere_view(const struct spheres *spheres, int field);
 /* Fills what is derived from the fields of sphere i: row products, 1/m from density and

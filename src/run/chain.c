@@ -319,12 +319,18 @@ static void renew_history(const struct simulation *sim, double history[CONTACT_L
     }
 }
 
-static void give_contacts(const struct chain *chain, struct simulation *sim,
-                          struct checkpoint *checkpoint)
+int chain_renew_contacts(const struct chain *chain, const struct simulation *sim, int n,
+                         struct contact_record *records)
+{
+    for (int r = 0; r < n; r++)
+        renew_history(sim, records[r].history);
+    return chain->same_space ? n : 0;
+}
+
+static void give_facet_contacts(const struct chain *chain, struct simulation *sim,
+                                struct checkpoint *checkpoint)
 {
     int n = 0;
-    for (int r = 0; r < checkpoint->n_contacts; r++)
-        renew_history(sim, checkpoint->contacts[r].history);
     for (int r = 0; r < checkpoint->n_facet_contacts; r++) {
         struct facet_contact_record record = checkpoint->facet_contacts[r];
         record.body = chain->body[record.body];
@@ -332,13 +338,9 @@ static void give_contacts(const struct chain *chain, struct simulation *sim,
         if (record.body >= 0)
             checkpoint->facet_contacts[n++] = record;
     }
-    sim->migrate.n_contacts = chain->same_space ? checkpoint->n_contacts : 0;
-    sim->migrate.contact_capacity = checkpoint->n_contacts;
-    sim->migrate.contacts = checkpoint->contacts;
     sim->migrate.n_facets = n;
     sim->migrate.facet_capacity = checkpoint->n_facet_contacts;
     sim->migrate.facets = checkpoint->facet_contacts;
-    checkpoint->contacts = NULL;
     checkpoint->facet_contacts = NULL;
 }
 
@@ -356,16 +358,17 @@ static bool is_sound(const struct chain *chain, const struct simulation *sim,
     return sound;
 }
 
-int chain_begin(const struct chain *chain, struct simulation *sim)
+int chain_begin(const struct chain *chain, struct simulation *sim,
+                struct checkpoint *checkpoint)
 {
     struct materials materials;
     materials_build(&materials, &chain->job);
-    struct checkpoint checkpoint = {
+    *checkpoint = (struct checkpoint){
         .spheres = &sim->spheres, .full = materials.full, .ledger = chain->job.energy_ledger};
     materials_clear(&materials);
-    int status = checkpoint_read(sim->comm, chain->path, &checkpoint);
+    int status = checkpoint_read(sim->comm, chain->path, checkpoint);
     if (status == REPORT_FINISHED &&
-        comm_agree(sim->comm, is_sound(chain, sim, &checkpoint) ? 0 : 1) != 0) {
+        comm_agree(sim->comm, is_sound(chain, sim, checkpoint) ? 0 : 1) != 0) {
         report_error("%s does not fit the job in it; start from another checkpoint",
                      chain->path);
         status = REPORT_STORAGE;
@@ -373,11 +376,10 @@ int chain_begin(const struct chain *chain, struct simulation *sim)
     if (status == REPORT_FINISHED) {
         for (int i = 0; i < sim->spheres.n_owned; i++)
             renew_sphere(chain, sim, i);
-        sim->next_id = checkpoint.next_id;
-        give_contacts(chain, sim, &checkpoint);
+        sim->next_id = checkpoint->next_id;
+        give_facet_contacts(chain, sim, checkpoint);
         report_say("starts from %s, step %lld (%.6g s): %lld spheres", chain->path,
                    (long long)chain->step, chain->time, (long long)chain->packing.n);
     }
-    checkpoint_clear(&checkpoint);
     return status;
 }

@@ -19,7 +19,9 @@
 #include "job/job.h"
 #include "model/packing.h"
 
+struct checkpoint;
 struct comm;
+struct contact_record;
 struct mistakes;
 struct simulation;
 
@@ -46,8 +48,13 @@ char *chain_checkpoint(const struct job *job);
 bool chain_open(struct chain *chain, const struct job *job, struct mistakes *mistakes);
 void chain_close(struct chain *chain);
 
-/* Gives this rank's share of that state to a simulation that has begun and has no spheres yet.
+/* Gives this rank's share of that state to a simulation that has begun and has no spheres yet;
+ * contacts between spheres are still to be read from `checkpoint`, which the caller clears.
  * Returns a REPORT_ status, the reason said.  Collective. */
-int chain_begin(const struct chain *chain, struct simulation *sim);
+int chain_begin(const struct chain *chain, struct simulation *sim,
+                struct checkpoint *checkpoint);
+/* Of records that were read so, how many come along, as the job has them. */
+int chain_renew_contacts(const struct chain *chain, const struct simulation *sim, int n,
+                         struct contact_record *records);
 
 #endif

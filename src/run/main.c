@@ -10,6 +10,7 @@
 #include <stdlib.h>
 
 #include "base/comm.h"
+#include "base/process.h"
 #include "base/report.h"
 #include "job/job.h"
 #include "run/control.h"
@@ -78,6 +79,7 @@ static void check_arithmetic(void)
 
 int main(int argc, char **argv)
 {
+    process_return_memory();
     COMM_CHECK(MPI_Init(&argc, &argv));
     const struct comm comm = comm_world();
     report_init(comm.rank == 0);

@@ -135,12 +135,13 @@ static bool has_fixed_grid(const struct simulation *sim)
 /* History of contacts that came with spheres from other ranks or from a file.  Where spheres
  * left the run, contacts with them end; their partner's rank cannot always know that before.
  * Returns how many are of spheres that are not near each other. */
-static int restore_arrivals(struct simulation *sim, bool some_left_run)
+static int restore(struct simulation *sim, int n, const struct contact_record *records,
+                   bool some_left_run)
 {
-    struct migrate *migrate = &sim->migrate;
+    const struct migrate *migrate = &sim->migrate;
     int n_strange = 0;
-    for (int r = 0; r < migrate->n_contacts; r++) {
-        const struct contact_record *record = &migrate->contacts[r];
+    for (int r = 0; r < n; r++) {
+        const struct contact_record *record = &records[r];
         const int first = lookup_find(&migrate->lookup, record->first_id);
         const int second = lookup_find(&migrate->lookup, record->second_id);
         if (some_left_run && (first < 0 || second < 0))
@@ -150,8 +151,23 @@ static int restore_arrivals(struct simulation *sim, bool some_left_run)
                                  second))
             n_strange++;
     }
-    migrate->n_contacts = 0;
     return n_strange;
+}
+
+static int restore_arrivals(struct simulation *sim, bool some_left_run)
+{
+    struct migrate *migrate = &sim->migrate;
+    const int n = migrate->n_contacts;
+    migrate->n_contacts = 0;
+    return restore(sim, n, migrate->contacts, some_left_run);
+}
+
+int redistribute_restore(struct simulation *sim, int n, const struct contact_record *records)
+{
+    if (sim->comm->n_ranks == 1)
+        return restore(sim, n, records, false);
+    migrate_follow(&sim->migrate, sim->comm, n, records);
+    return restore_arrivals(sim, false);
 }
 
 static void restore_facets(struct simulation *sim)
@@ -260,6 +276,7 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
     const bool moves =
         sim->comm->n_ranks > 1 || renew || removed != NULL || born || sim->spheres.periodic.any;
     update_subdomains(sim, moves, renew, removed, &sim->contacts);
+    migrate_forget_before(&sim->migrate);
     runtime_end(&sim->runtime, RUNTIME_REDISTRIBUTE);
     const int n_strange = search(sim, moves ? sim->migrate.moved : NULL, removed != NULL);
     CHECK(n_strange == 0, "%d contacts of spheres that are not here", n_strange);
@@ -267,7 +284,7 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
     runtime_end(&sim->runtime, RUNTIME_SEARCH);
 }
 
-bool redistribute_first(struct simulation *sim)
+void redistribute_first(struct simulation *sim)
 {
     sim->asked_most = ASKED_LEAST;
     if (has_fixed_grid(sim))
@@ -277,9 +294,8 @@ bool redistribute_first(struct simulation *sim)
         repartition(sim);
     boxes_update(&sim->boxes);
     update_subdomains(sim, true, true, NULL, NULL);
-    const int n_strange = search(sim, sim->migrate.moved, false);
-    migrate_forget(&sim->migrate);
-    return comm_agree(sim->comm, n_strange > 0) == 0;
+    spheres_fit(&sim->spheres);
+    search(sim, sim->migrate.moved, false);
 }
 
 void redistribute_spend(struct simulation *sim, const double spent[2])

@@ -10,6 +10,7 @@
 
 #include <stdbool.h>
 
+struct contact_record;
 struct simulation;
 
 /* Must the lists be made anew before forces can be computed?  Local, the same on all ranks. */
@@ -23,9 +24,12 @@ void redistribute(struct simulation *sim, const unsigned char *removed);
 /* Makes the inner list anew out of the candidates.  Local, on all ranks together. */
 void redistribute_inner(struct simulation *sim);
 /* First distribution of spheres that lie anywhere, in any order; the migration holds the
- * records of their contacts.  False where some of these join spheres that are far apart.
- * Collective. */
-bool redistribute_first(struct simulation *sim);
+ * records of their contacts with bodies.  Collective. */
+void redistribute_first(struct simulation *sim);
+/* After it, as often as there are more of them: n records of contacts between spheres, in which
+ * one of those takes part that this rank owned before.  Returns how many arrived here that join
+ * spheres which are far apart.  Collective. */
+int redistribute_restore(struct simulation *sim, int n, const struct contact_record *records);
 
 /* Books the motion of the step just done against the allowances; spent[] is the largest on any
  * rank. Finds out exactly where the bound says stale.  Collective when it does. */

@@ -111,9 +111,43 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     watch_init(&sim->watch, job);
 }
 
-/* Spheres are here in some order: complete them, choose kernels, distribute and search.  `from`
- * is the file that they come from, if any.  Returns a REPORT_ status, the reason said. */
-static int finish(struct simulation *sim, enum isa isa, const char *from)
+/* A file that spheres have come from and contacts between them are still to come from. */
+struct origin {
+    const char *path;
+    const struct checkpoint *checkpoint;
+    const struct chain *chain; /* where it is of another job, else NULL */
+};
+
+struct arrival {
+    struct simulation *sim;
+    const struct chain *chain;
+    int n_strange; /* contacts of spheres that are far apart */
+};
+
+static void take_contacts(void *into, int n, struct contact_record *records)
+{
+    struct arrival *arrival = into;
+    if (arrival->chain != NULL)
+        n = chain_renew_contacts(arrival->chain, arrival->sim, n, records);
+    arrival->n_strange += redistribute_restore(arrival->sim, n, records);
+}
+
+/* Now that lists are there, so that all records need not be. */
+static int restore_contacts(struct simulation *sim, const struct origin *origin)
+{
+    struct arrival arrival = {.sim = sim, .chain = origin->chain};
+    const int status = checkpoint_read_contacts(sim->comm, origin->path, origin->checkpoint,
+                                                take_contacts, &arrival);
+    if (status != REPORT_FINISHED || comm_agree(sim->comm, arrival.n_strange > 0) == 0)
+        return status;
+    report_error("cannot use the checkpoint %s: it has contacts of spheres that are far apart",
+                 origin->path);
+    return REPORT_STORAGE;
+}
+
+/* Spheres are here in some order: complete them, choose kernels, distribute and search.
+ * `origin` is NULL where they come from no file.  Returns a REPORT_ status, the reason said. */
+static int finish(struct simulation *sim, enum isa isa, const struct origin *origin)
 {
     for (int i = 0; i < sim->spheres.n_owned; i++)
         sphere_complete(&sim->spheres, i, &sim->materials);
@@ -126,15 +160,13 @@ static int finish(struct simulation *sim, enum isa isa, const char *from)
     runtime_init(&sim->runtime, sim->step);
     bodies_place(&sim->bodies, sim->step, sim->dt);
     deform_begin(sim);
-    const bool fits = redistribute_first(sim);
+    redistribute_first(sim);
+    const int status = origin != NULL ? restore_contacts(sim, origin) : REPORT_FINISHED;
+    migrate_forget(&sim->migrate);
     watch_bodies(&sim->watch, sim);
     watch_elements(&sim->watch, sim);
     runtime_begin(&sim->runtime);
-    if (fits)
-        return REPORT_FINISHED;
-    report_error("cannot use the checkpoint %s: it has contacts of spheres that are far apart",
-                 from);
-    return REPORT_STORAGE;
+    return status;
 }
 
 void simulation_set_sphere(struct simulation *sim, int i, int64_t id, int group,
@@ -230,18 +262,19 @@ int simulation_create(struct simulation *sim, const struct comm *comm, const str
         return status;
     }
     begin(sim, comm, job, isa);
+    struct checkpoint checkpoint = {.spheres = &sim->spheres};
+    const struct origin origin = {chain.path, &checkpoint, &chain};
     if (job->start.given)
-        status = chain_begin(&chain, sim);
+        status = chain_begin(&chain, sim, &checkpoint);
     if (status == REPORT_FINISHED)
         status = add_groups(sim, &chain.packing);
-    chain_close(&chain);
-    if (status != REPORT_FINISHED) {
-        simulation_destroy(sim);
-        return status;
+    if (status == REPORT_FINISHED) {
+        sim->spheres.n_all = sim->spheres.n_owned;
+        order_renew(&sim->spheres, comm);
+        status = finish(sim, isa, job->start.given ? &origin : NULL);
     }
-    sim->spheres.n_all = sim->spheres.n_owned;
-    order_renew(&sim->spheres, comm);
-    status = finish(sim, isa, job->start.given ? job->start.from : "");
+    checkpoint_clear(&checkpoint);
+    chain_close(&chain);
     if (status == REPORT_FINISHED)
         observe_taken_over(sim);
     else
@@ -321,14 +354,12 @@ int simulation_restart(struct simulation *sim, const struct comm *comm, const st
     deform_state_restore(sim, checkpoint.more);
     touch_restore(sim, &checkpoint.more[checkpoint.n_more - 1]);
     sim->spheres.n_all = sim->spheres.n_owned;
-    sim->migrate.n_contacts = sim->migrate.contact_capacity = checkpoint.n_contacts;
-    sim->migrate.contacts = checkpoint.contacts;
     sim->migrate.n_facets = sim->migrate.facet_capacity = checkpoint.n_facet_contacts;
     sim->migrate.facets = checkpoint.facet_contacts;
-    checkpoint.contacts = NULL;
     checkpoint.facet_contacts = NULL;
+    const struct origin origin = {checkpoint_path, &checkpoint, NULL};
+    status = finish(sim, isa, &origin);
     checkpoint_clear(&checkpoint);
-    status = finish(sim, isa, checkpoint_path);
     if (status != REPORT_FINISHED)
         simulation_destroy(sim);
     return status;

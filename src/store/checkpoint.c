@@ -552,12 +552,6 @@ static char *check_values(const struct table tables[N_TABLES], const struct sphe
             return array_format("/spheres: radius, material or group of id %" PRId64
                                 " makes no sense",
                                 spheres->id[i]);
-    const struct contact_record *contacts = (const void *)tables[CONTACTS].records;
-    for (int64_t i = 0; i < tables[CONTACTS].n; i++)
-        if (contacts[i].first_id >= contacts[i].second_id ||
-            !(contacts[i].history[CONTACT_RADIUS_LANE] > 0.0))
-            return array_format("/contacts: that of %" PRId64 " and %" PRId64 " makes no sense",
-                                contacts[i].first_id, contacts[i].second_id);
     return check_facet_contacts(&tables[FACET_CONTACTS]);
 }
 
@@ -567,8 +561,8 @@ static char *read_rows(const struct comm *comm, const char *path, struct checkpo
 {
     struct h5 h5;
     h5_open(&h5, path);
-    for (int k = 0; k < N_KINDS; k++)
-        table_read(&tables[k], &h5, comm, checkpoint->next_id);
+    table_read(&tables[SPHERES], &h5, comm, checkpoint->next_id);
+    table_read(&tables[FACET_CONTACTS], &h5, comm, checkpoint->next_id);
     const struct comm alone = {.mpi = MPI_COMM_SELF, .rank = 0, .n_ranks = 1};
     for (int k = 0; k < checkpoint->n_more; k++) {
         struct table *table = &tables[N_KINDS + k];
@@ -581,11 +575,12 @@ static char *read_rows(const struct comm *comm, const char *path, struct checkpo
 /* Gives the records to the checkpoint. */
 static void hand_over(struct checkpoint *checkpoint, struct table tables[N_TABLES])
 {
-    checkpoint->n_contacts = (int)tables[CONTACTS].n;
-    checkpoint->contacts = (void *)tables[CONTACTS].records;
+    const struct spheres *spheres = checkpoint->spheres;
+    checkpoint->n_slice = spheres->n_owned;
+    checkpoint->slice = array_allocate((size_t)spheres->n_owned, sizeof *checkpoint->slice);
+    memcpy(checkpoint->slice, spheres->id, (size_t)spheres->n_owned * sizeof *spheres->id);
     checkpoint->n_facet_contacts = (int)tables[FACET_CONTACTS].n;
     checkpoint->facet_contacts = (void *)tables[FACET_CONTACTS].records;
-    tables[CONTACTS].records = NULL;
     tables[FACET_CONTACTS].records = NULL;
     for (int k = 0; k < checkpoint->n_more; k++) {
         struct table *table = &tables[N_KINDS + k];
@@ -615,20 +610,23 @@ static char *read_file(const struct comm *comm, const char *path, struct checkpo
     why = read_rows(comm, path, checkpoint, tables);
     if (!shared_file_all_well(comm, &why))
         return why;
-    char *lost[2] = {table_follow(&tables[CONTACTS], comm, &tables[SPHERES], 2),
-                     table_follow(&tables[FACET_CONTACTS], comm, &tables[SPHERES], 1)};
+    why = table_follow(&tables[FACET_CONTACTS], comm, &tables[SPHERES], 1);
     place_spheres(checkpoint->spheres, &tables[SPHERES]);
-    why = lost[0] != NULL ? lost[0] : check_values(tables, checkpoint->spheres);
+    if (why == NULL)
+        why = check_values(tables, checkpoint->spheres);
     for (int k = 0; k < checkpoint->n_more && why == NULL; k++)
         if (checkpoint->more[k].contacts)
             why = check_facet_contacts(&tables[N_KINDS + k]);
-    if (why == NULL)
-        why = lost[1];
-    else
-        free(lost[1]);
     if (shared_file_all_well(comm, &why))
         hand_over(checkpoint, tables);
     return why;
+}
+
+static int refuse(const char *path, char *why)
+{
+    report_error("cannot use the checkpoint %s: %s", path, why);
+    free(why);
+    return REPORT_STORAGE;
 }
 
 int checkpoint_read(const struct comm *comm, const char *path, struct checkpoint *checkpoint)
@@ -639,12 +637,59 @@ int checkpoint_read(const struct comm *comm, const char *path, struct checkpoint
     tables_clear(tables, checkpoint);
     if (why == NULL)
         return REPORT_FINISHED;
-    report_error("cannot use the checkpoint %s: %s", path, why);
-    free(why);
     checkpoint_clear(checkpoint);
     checkpoint->spheres->n_owned = checkpoint->spheres->n_all = 0;
     spheres_pad(checkpoint->spheres);
-    return REPORT_STORAGE;
+    return refuse(path, why);
+}
+
+static char *check_contacts(const struct table *table)
+{
+    const struct contact_record *contacts = (const void *)table->records;
+    for (int64_t i = 0; i < table->n; i++)
+        if (contacts[i].first_id >= contacts[i].second_id ||
+            !(contacts[i].history[CONTACT_RADIUS_LANE] > 0.0))
+            return array_format("/contacts: that of %" PRId64 " and %" PRId64 " makes no sense",
+                                contacts[i].first_id, contacts[i].second_id);
+    return NULL;
+}
+
+/* A part of the contacts that is right and where it belongs; false with the reason in h5.
+ * Collective. */
+static bool read_contacts_part(struct table *table, const struct comm *comm, struct h5 *h5,
+                               const struct checkpoint *checkpoint, int64_t part)
+{
+    struct table owners;
+    table_init(&owners, "spheres", sizeof *checkpoint->slice, compare_spheres);
+    owners.n = checkpoint->n_slice;
+    owners.records = (void *)checkpoint->slice;
+    table_read_part(table, h5, comm, checkpoint->next_id, part, table_n_parts(table, comm));
+    if (!shared_file_all_well(comm, &h5->why))
+        return false;
+    h5->why = table_follow(table, comm, &owners, 2);
+    if (h5->why == NULL)
+        h5->why = check_contacts(table);
+    return shared_file_all_well(comm, &h5->why);
+}
+
+int checkpoint_read_contacts(const struct comm *comm, const char *path,
+                             const struct checkpoint *checkpoint, checkpoint_take *take,
+                             void *into)
+{
+    struct table table;
+    struct h5 h5;
+    describe_contacts(&table, checkpoint->full, checkpoint->ledger);
+    h5_open(&h5, path);
+    table_measure(&table, &h5);
+    bool well = shared_file_all_well(comm, &h5.why);
+    for (int64_t part = 0; well && part < table_n_parts(&table, comm); part++) {
+        well = read_contacts_part(&table, comm, &h5, checkpoint, part);
+        if (well)
+            take(into, (int)table.n, (void *)table.records);
+    }
+    h5_close(&h5);
+    table_clear(&table);
+    return well ? REPORT_FINISHED : refuse(path, h5.why);
 }
 
 void checkpoint_clear(struct checkpoint *checkpoint)
@@ -652,7 +697,7 @@ void checkpoint_clear(struct checkpoint *checkpoint)
     struct spheres *spheres = checkpoint->spheres;
     free(checkpoint->title);
     free(checkpoint->job_text);
-    free(checkpoint->contacts);
+    free(checkpoint->slice);
     free(checkpoint->facet_contacts);
     free(checkpoint->monitors);
     for (int k = 0; k < checkpoint->n_more; k++)

@@ -91,11 +91,12 @@ struct checkpoint {
     struct spheres *spheres; /* owned ones are state */
     bool full, ledger;       /* which lanes of history there are: set before reading, too */
     bool removals;           /* are some spheres to be taken out?  Likewise */
-    int n_contacts;          /* records held here: see below */
+    int n_slice;             /* as read: spheres that this rank was given, and their ids */
+    int64_t *slice;
+    int n_contacts; /* to write: records held here, see below */
     int n_facet_contacts;
-    struct contact_record *contacts; /* as read */
-    struct facet_contact_record *facet_contacts;
-    struct checkpoint_contacts held; /* to write */
+    struct facet_contact_record *facet_contacts; /* as read */
+    struct checkpoint_contacts held;             /* to write */
     int n_monitors; /* the same names on all ranks; sums are this rank's shares */
     struct checkpoint_monitor *monitors;
     struct notes notes; /* the same on all ranks */
@@ -113,15 +114,26 @@ int checkpoint_write(const struct comm *comm, const char *path,
                      const struct checkpoint *checkpoint);
 
 /*
- * Reads `path` into a cleared `checkpoint`, whose `spheres` points to an initialised struct
- * spheres; each rank gets a slice of the ids as its owned spheres (fields only: sphere_complete
- * is the caller's), all contact records in which one of them takes part (sorted), and all facet
- * contact records of them.  Materials, bodies and features are not compared with the job: the
+ * Reads `path`, but for contacts between spheres, into a cleared `checkpoint`, whose `spheres`
+ * points to an initialised struct spheres; each rank gets a slice of the ids as its owned
+ * spheres (fields only: sphere_complete is the caller's), and all facet contact records of
+ * them.  Materials, bodies and features are not compared with the job: the
  * caller knows it.  Monitor totals are given to rank 0, zeros to the others.  Returns
  * REPORT_FINISHED, or REPORT_STORAGE with the reason said (missing, truncated, checksum, newer
  * format), the same on all ranks.  Collective.
  */
 int checkpoint_read(const struct comm *comm, const char *path, struct checkpoint *checkpoint);
+
+/* Gets records of contacts, which it may change and not keep; called as often on all ranks. */
+typedef void checkpoint_take(void *into, int n, struct contact_record *records);
+
+/* Reads the contacts between spheres, part by part, after checkpoint_read() of the same file:
+ * each rank gets the records in which a sphere of its slice takes part (sorted within a part).
+ * Returns a status as checkpoint_read(); some may have been taken before the file turns out to
+ * be damaged.  Collective. */
+int checkpoint_read_contacts(const struct comm *comm, const char *path,
+                             const struct checkpoint *checkpoint, checkpoint_take *take,
+                             void *into);
 
 /* Frees what checkpoint_read allocated, except the spheres. */
 void checkpoint_clear(struct checkpoint *checkpoint);

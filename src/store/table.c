@@ -258,10 +258,15 @@ static void write_part(struct table *table, const struct comm *comm, struct h5 *
     table->n = kept;
 }
 
-void table_stream(struct table *table, const struct comm *comm, struct h5 *h5)
+int64_t table_n_parts(const struct table *table, const struct comm *comm)
 {
     const int64_t bytes = table->n_total * (int64_t)table->record_size;
-    const int64_t n_parts = bytes / table->part_bytes / comm->n_ranks + 1;
+    return bytes / table->part_bytes / comm->n_ranks + 1;
+}
+
+void table_stream(struct table *table, const struct comm *comm, struct h5 *h5)
+{
+    const int64_t n_parts = table_n_parts(table, comm);
     const int64_t ids = table->n_ids / n_parts + 1;
     int64_t written = 0;
     table->n = 0;
@@ -372,10 +377,13 @@ static void read_column(struct table *table, int k, struct h5 *h5)
     free(rows);
 }
 
-void table_read(struct table *table, struct h5 *h5, const struct comm *comm, int64_t n_ids)
+/* This rank's slice of n rows from `first` on. */
+static void read_slice(struct table *table, struct h5 *h5, const struct comm *comm,
+                       int64_t n_ids, int64_t first, int64_t n)
 {
-    table->begin = slice_begin(table, table->n_total, comm->rank, comm->n_ranks);
-    table->n = slice_begin(table, table->n_total, comm->rank + 1, comm->n_ranks) - table->begin;
+    const int64_t begin = slice_begin(table, n, comm->rank, comm->n_ranks);
+    table->begin = first + begin;
+    table->n = slice_begin(table, n, comm->rank + 1, comm->n_ranks) - begin;
     free(table->records);
     table->records = array_allocate((size_t)table->n, table->record_size);
     for (int k = 0; k < table->n_columns; k++)
@@ -388,6 +396,20 @@ void table_read(struct table *table, struct h5 *h5, const struct comm *comm, int
         else if (i > 0 && table->compare(record(table, i - 1), record(table, i)) >= 0)
             h5_fail(h5, "/%s: id %lld is out of order", table->name, (long long)id);
     }
+}
+
+void table_read(struct table *table, struct h5 *h5, const struct comm *comm, int64_t n_ids)
+{
+    read_slice(table, h5, comm, n_ids, 0, table->n_total);
+}
+
+void table_read_part(struct table *table, struct h5 *h5, const struct comm *comm, int64_t n_ids,
+                     int64_t part, int64_t n_parts)
+{
+    const int64_t most = (n_blocks(table->n_total) + n_parts - 1) / n_parts * TABLE_BLOCK;
+    const int64_t first = part * most < table->n_total ? part * most : table->n_total;
+    const int64_t left = table->n_total - first;
+    read_slice(table, h5, comm, n_ids, first, left < most ? left : most);
 }
 
 /* ----------------------------------------------------------------------------------- follow */
@@ -465,7 +487,8 @@ char *table_follow(struct table *table, const struct comm *comm, const struct ta
     CHECK(n_ids == 1 || n_ids == 2, "records of %d ids", n_ids);
     char *why = NULL;
     int64_t *first = first_ids(owners, comm, &why);
-    send_to_owners(table, comm, first, n_ids);
+    if (comm->n_ranks > 1)
+        send_to_owners(table, comm, first, n_ids);
     for (int64_t i = 0; i < table->n; i++)
         for (int k = 0; k < n_ids && why == NULL; k++) {
             int64_t id;

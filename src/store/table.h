@@ -84,6 +84,14 @@ void table_measure(struct table *table, struct h5 *h5);
  * and that keys ascend.  Local. */
 void table_read(struct table *table, struct h5 *h5, const struct comm *comm, int64_t n_ids);
 
+/* In how many parts a rank deals with a table, so that it never holds much of it.  The same on
+ * all ranks. */
+int64_t table_n_parts(const struct table *table, const struct comm *comm);
+/* The same as table_read() of one of n_parts parts of the rows, of which this rank reads a
+ * slice.  Local. */
+void table_read_part(struct table *table, struct h5 *h5, const struct comm *comm, int64_t n_ids,
+                     int64_t part, int64_t n_parts);
+
 /* After table_read of both: sends each record to the ranks in whose slice of `owners` its ids
  * lie; the first n_ids int64 of a record are ids.  Returns NULL, or what is wrong (an id that
  * no slice has), which the caller frees.  Collective. */

@@ -15,7 +15,6 @@ WORK = os.path.abspath(os.environ.get("WORK") or os.path.join(ROOT, "build", "be
 OUT = os.path.abspath(os.environ.get("OUT") or HERE)
 BIN = os.path.abspath(os.environ.get("BIN") or os.path.join(ROOT, "bin"))
 CORE = os.environ.get("CORE") or "0"  # where runs of one rank are pinned
-ISA = os.environ.get("ISA") or "auto"
 PHASES = ("bodies", "facets", "pairs", "integrate", "halo", "watch", "search", "redistribute", "repartition")
 
 
@@ -73,7 +72,7 @@ def table(folder, name):
     return columns
 
 
-def tremie_run(name, job, options, step, steps, ledger, ranks, first=0, restart=None):
+def tremie_run(name, job, options, step, steps, ledger, ranks, first=0, restart=None, isa="auto"):
     """A run of its own of `steps` steps of `step` seconds, those before `first` having been done by `restart`.
     Of the series, rows in which nothing moves tell of the start and of the last checkpoint."""
     folder = os.path.join(WORK, "runs", name)
@@ -82,7 +81,7 @@ def tremie_run(name, job, options, step, steps, ledger, ranks, first=0, restart=
     settings = [("time.step", repr(step)), ("time.end", "%.12g" % ((first + steps) * step)),
                 ("output.series.every", "%.12g" % (math.gcd(first, steps) * step)), ("contact.ledger", str(ledger).lower()),
                 ("checkpoint.every.wall", 0), ("checkpoint.every.steps", 0), ("checkpoint.keep", 1), *options]
-    command = [os.path.join(BIN, "tremie"), "run", os.path.join(HERE, job), "--out", folder, "--isa", ISA]
+    command = [os.path.join(BIN, "tremie"), "run", os.path.join(HERE, job), "--out", folder, "--isa", isa]
     command += ["--restart", restart] if restart else []
     for key, value in settings:
         command += ["--set", f"{key}={value}"]

@@ -41,7 +41,7 @@ def row(case, variant, number, run):
     user = run.user - variant.start
     work = run.n * run.steps
     touching = run.contacts + (run.facet_contacts or 0)
-    kept = {"case": case.name, "code": variant.code, "ranks": variant.ranks, "round": number, "spheres": run.n,
+    kept = {"case": case.name, "code": variant.code, "isa": variant.isa, "ranks": variant.ranks, "round": number, "spheres": run.n,
             "steps": run.steps, "wall_s": run.wall, "user_s": user, "rate_wall": work / run.wall * 1e-6,
             "rate_user": work / user * 1e-6 if user > 0 else float("nan"), "z": 2 * run.contacts / run.n,
             "contacts": run.contacts, "contacts_a_sphere": touching / run.n,
@@ -65,6 +65,11 @@ def median(rows, column):
 
 def spread(values, digits=2):
     return f"{statistics.median(values):.{digits}f} ({min(values):.{digits}f} to {max(values):.{digits}f})"
+
+
+def by_isa(rows):
+    """What was measured with each of tremie's instruction sets, and of its peers, which have none."""
+    return {isa: [r for r in rows if r["isa"] in (isa, "")] for isa in dict.fromkeys(r["isa"] for r in rows) if isa}
 
 
 def groups(rows):
@@ -112,17 +117,20 @@ def keep_rounds(name, rows):
 
 def keep_suite(rows):
     keep_rounds("suite", rows)
+    merge("suite", SUITE, [r for isa, own in by_isa(rows).items() for r in suite_of(isa, own)])
+
+
+def suite_of(isa, rows):
     result, by_key = [], groups(rows)
     for (case, code, ranks), own in by_key.items():
         rates = [r["rate_wall"] for r in own]
         one = {r["round"]: r["rate_wall"] for r in by_key.get((case, code, 1), [])}
         efficiency = [r["rate_wall"] / one[r["round"]] / ranks for r in own if r["round"] in one]
-        result.append({key: median(own, key) for key in SUITE if key in own[0] and key not in ("case", "code")}
+        result.append({key: median(own, key) for key in SUITE if key in own[0] and key not in ("case", "code", "isa")}
                       | {"case": case, "code": code, "ranks": ranks, "rounds": len(own), "rate": statistics.median(rates),
                          "least": min(rates), "most": max(rates), "rate_by_user": median(own, "rate_user"),
-                         "efficiency": statistics.median(efficiency) if efficiency else "", "isa": codes.ISA,
-                         "machine": machine()})
-    merge("suite", SUITE, result)
+                         "efficiency": statistics.median(efficiency) if efficiency else "", "isa": isa, "machine": machine()})
+    return result
 
 
 def number(text, digits=2):
@@ -200,13 +208,17 @@ def ratios(by_key, case, code, ranks, of, column):
 
 def keep_peers(rows):
     keep_rounds("peers", rows)
+    merge("peers", PEERS, [r for isa, own in by_isa(rows).items() for r in peers_of(isa, own)])
+
+
+def peers_of(isa, rows):
     by_key, result = groups(rows), []
     for (case, code, ranks), own in by_key.items():
         main = "rate_user" if ranks == 1 else "rate_wall"
         rates, walls = [r[main] for r in own], [r["rate_wall"] for r in own]
-        kept = {key: median(own, key) for key in PEERS if key in own[0] and key not in ("case", "code")}
+        kept = {key: median(own, key) for key in PEERS if key in own[0] and key not in ("case", "code", "isa")}
         kept |= {"case": case, "code": code, "ranks": ranks, RATE: statistics.median(rates), "rate_least": min(rates),
-                 "rate_most": max(rates), "rate_by_wall": statistics.median(walls), "rounds": len(own), "isa": codes.ISA,
+                 "rate_most": max(rates), "rate_by_wall": statistics.median(walls), "rounds": len(own), "isa": isa,
                  "machine": machine()}
         for of, names in ((WITH, (RATIO, "ratio_least", "ratio_most", "ratio_by_wall")),
                           (WITHOUT, (RATIO_WITHOUT, "ratio_without_least", "ratio_without_most", "ratio_without_by_wall"))):
@@ -215,7 +227,7 @@ def keep_peers(rows):
                 by_wall = ratios(by_key, case, code, ranks, of, "rate_wall")
                 kept |= dict(zip(names, (statistics.median(found), min(found), max(found), statistics.median(by_wall))))
         result.append(kept)
-    merge("peers", PEERS, result)
+    return result
 
 
 def peers_table():

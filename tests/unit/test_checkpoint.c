@@ -91,12 +91,18 @@ static void add_notes(struct checkpoint *checkpoint)
 static int pairs_of(const void *from, int64_t begin, int64_t end,
                     struct contact_record **records)
 {
-    const struct checkpoint *all = from;
+    const struct spheres *spheres = ((const struct checkpoint *)from)->spheres;
     int n = 0;
-    *records = array_allocate((size_t)all->n_contacts, sizeof **records);
-    for (int k = 0; k < all->n_contacts; k++)
-        if (all->contacts[k].first_id >= begin && all->contacts[k].first_id < end)
-            (*records)[n++] = all->contacts[k];
+    *records = array_allocate(2 * (size_t)spheres->n_owned, sizeof **records);
+    for (int i = 0; i < spheres->n_owned; i++) {
+        const int64_t id = spheres->id[i];
+        for (int64_t other = id + 1; other <= id + 1600; other += 1599) {
+            if (id < begin || id >= end || !touches(id, other))
+                continue;
+            (*records)[n] = (struct contact_record){.first_id = id, .second_id = other};
+            fill_history((*records)[n++].history, id);
+        }
+    }
     return n;
 }
 
@@ -121,18 +127,11 @@ static void build(struct checkpoint *checkpoint, struct spheres *spheres,
     checkpoint->title = array_string("A heap of \xc3\xa9tain");
     checkpoint->job_text = array_string("title: test\ntime: {end: 1}\n");
     checkpoint->full = checkpoint->ledger = checkpoint->removals = true;
-    checkpoint->contacts = array_allocate(2 * N_IDS, sizeof *checkpoint->contacts);
     checkpoint->facet_contacts = array_allocate(2 * N_IDS, sizeof *checkpoint->facet_contacts);
     for (int64_t id = 0; id < N_IDS; id++) {
         if (!exists(id) || owner(comm, id) != comm->rank)
             continue;
-        for (int64_t other = id + 1; other <= id + 1600; other += 1599) {
-            if (!touches(id, other))
-                continue;
-            struct contact_record *record = &checkpoint->contacts[checkpoint->n_contacts++];
-            *record = (struct contact_record){.first_id = id, .second_id = other};
-            fill_history(record->history, id);
-        }
+        checkpoint->n_contacts += touches(id, id + 1) + touches(id, id + 1600);
         for (int body = 0; id % 7 == 0 && body < 2; body++) {
             struct facet_contact_record *record =
                 &checkpoint->facet_contacts[checkpoint->n_facet_contacts++];
@@ -216,6 +215,30 @@ static void put_bytes(const char *path, const unsigned char *bytes, size_t n)
     free(why);
 }
 
+struct pairs {
+    int n, capacity;
+    struct contact_record *records;
+};
+
+static void take_pairs(void *into, int n, struct contact_record *records)
+{
+    struct pairs *pairs = into;
+    ARRAY_GROW(pairs->records, pairs->n + n, pairs->capacity);
+    for (int k = 0; k < n; k++)
+        pairs->records[pairs->n++] = records[k];
+}
+
+/* Are these pairs those that this checkpoint has, by first and second id? */
+static bool same_pairs(const struct checkpoint *checkpoint, const struct pairs *pairs)
+{
+    struct contact_record *expected;
+    const int n = pairs_of(checkpoint, 0, INT64_MAX, &expected);
+    const bool same =
+        n == pairs->n && memcmp(pairs->records, expected, (size_t)n * sizeof *expected) == 0;
+    free(expected);
+    return same;
+}
+
 /* Reads on this process alone; is the state that of build()? */
 static int read_alone(const char *path, bool *same)
 {
@@ -225,15 +248,16 @@ static int read_alone(const char *path, bool *same)
     build(&was, &spheres_was, &self);
     spheres_init(&spheres_is);
     is.spheres = &spheres_is;
-    const int status = checkpoint_read(&self, path, &is);
-    *same =
-        status == REPORT_FINISHED && is.step == was.step && is.dt == was.dt &&
-        is.next_id == was.next_id && strcmp(is.title, was.title) == 0 &&
-        strcmp(is.job_text, was.job_text) == 0 && is.n_contacts == was.n_contacts &&
-        spheres_is.n_owned == spheres_was.n_owned &&
-        memcmp(is.contacts, was.contacts, (size_t)is.n_contacts * sizeof *is.contacts) == 0 &&
-        is.n_facet_contacts == was.n_facet_contacts &&
-        notes_checksum(&is.notes) == notes_checksum(&was.notes);
+    int status = checkpoint_read(&self, path, &is);
+    struct pairs pairs = {0};
+    if (status == REPORT_FINISHED)
+        status = checkpoint_read_contacts(&self, path, &is, take_pairs, &pairs);
+    *same = status == REPORT_FINISHED && is.step == was.step && is.dt == was.dt &&
+            is.next_id == was.next_id && strcmp(is.title, was.title) == 0 &&
+            strcmp(is.job_text, was.job_text) == 0 && pairs.n == was.n_contacts &&
+            spheres_is.n_owned == spheres_was.n_owned && same_pairs(&is, &pairs) &&
+            is.n_facet_contacts == was.n_facet_contacts &&
+            notes_checksum(&is.notes) == notes_checksum(&was.notes);
     for (int i = 0; *same && i < spheres_is.n_owned; i++) {
         const int j = spheres_was.n_owned - 1 - i;
         for (int f = 0; f < SPHERE_N_FIELDS; f++) {
@@ -243,6 +267,7 @@ static int read_alone(const char *path, bool *same)
                                     field_size(&sphere_fields[f])) == 0;
         }
     }
+    free(pairs.records);
     clear(&was, &spheres_was);
     clear(&is, &spheres_is);
     return status;
@@ -288,12 +313,12 @@ static int n_contacts_of(const struct spheres *spheres)
     return n;
 }
 
-static void expect_contacts(const struct checkpoint *checkpoint)
+static void expect_contacts(const struct checkpoint *checkpoint, const struct pairs *pairs)
 {
     const struct spheres *spheres = checkpoint->spheres;
-    EXPECT(checkpoint->n_contacts == n_contacts_of(spheres));
-    for (int k = 0; k < checkpoint->n_contacts; k++) {
-        const struct contact_record *record = &checkpoint->contacts[k];
+    EXPECT(pairs->n == n_contacts_of(spheres));
+    for (int k = 0; k < pairs->n; k++) {
+        const struct contact_record *record = &pairs->records[k];
         double history[CONTACT_LANES];
         fill_history(history, record->first_id);
         EXPECT(owns(spheres, record->first_id) || owns(spheres, record->second_id));
@@ -335,7 +360,11 @@ TEST(state_returns)
         EXPECT(sphere_radius(&spheres, i) == 0.1 + 1e-5 * (double)spheres.id[i]);
         EXPECT(i == 0 || spheres.id[i] > spheres.id[i - 1]);
     }
-    expect_contacts(&checkpoint);
+    struct pairs pairs = {0};
+    EXPECT(checkpoint_read_contacts(&comm, path, &checkpoint, take_pairs, &pairs) ==
+           REPORT_FINISHED);
+    expect_contacts(&checkpoint, &pairs);
+    free(pairs.records);
     clear(&checkpoint, &spheres);
     spheres_clear(&expected);
     free(path);
@@ -428,7 +457,10 @@ TEST(nothing_at_all)
     EXPECT(checkpoint_write(&comm, path, &checkpoint) == REPORT_FINISHED);
     struct checkpoint read = {.spheres = &spheres, .full = true, .ledger = true};
     EXPECT(checkpoint_read(&comm, path, &read) == REPORT_FINISHED);
-    EXPECT(spheres.n_owned == 0 && read.n_contacts == 0 && read.n_monitors == 0);
+    struct pairs pairs = {0};
+    EXPECT(checkpoint_read_contacts(&comm, path, &read, take_pairs, &pairs) == REPORT_FINISHED);
+    EXPECT(spheres.n_owned == 0 && pairs.n == 0 && read.n_monitors == 0);
+    free(pairs.records);
     EXPECT_STRING(read.job_text, "");
     clear(&read, &spheres);
     free(path);
@@ -441,10 +473,16 @@ static void expect_refused(const struct comm *comm, const char *path)
     spheres_init(&spheres);
     struct checkpoint checkpoint = {
         .spheres = &spheres, .full = true, .ledger = true, .removals = true};
+    struct pairs pairs = {0};
     report_init(false);
-    EXPECT(checkpoint_read(comm, path, &checkpoint) == REPORT_STORAGE);
+    const int status = checkpoint_read(comm, path, &checkpoint);
+    if (status == REPORT_FINISHED)
+        EXPECT(checkpoint_read_contacts(comm, path, &checkpoint, take_pairs, &pairs) ==
+               REPORT_STORAGE);
+    else
+        EXPECT(status == REPORT_STORAGE && spheres.n_owned == 0 && checkpoint.title == NULL);
     report_init(comm->rank == 0);
-    EXPECT(spheres.n_owned == 0 && checkpoint.title == NULL);
+    free(pairs.records);
     clear(&checkpoint, &spheres);
 }
 

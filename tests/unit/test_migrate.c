@@ -151,6 +151,30 @@ static void place(struct run *run, int round)
     }
 }
 
+/* Records of the pair contacts of ids first .. past - 1 come late, in two parts. */
+static void follow(struct run *run, int first, int past)
+{
+    struct contact_record *records = NULL;
+    int n = 0, capacity = 0;
+    for (int a = 0; a < N; a++) {
+        for (int b = a + 1; b < N; b++) {
+            const bool here = (a >= first && a < past) || (b >= first && b < past);
+            if (!here || !touches(run, a, b))
+                continue;
+            ARRAY_GROW(records, n + 1, capacity);
+            records[n] = (struct contact_record){.first_id = a, .second_id = b};
+            for (int l = 0; l < CONTACT_LANES; l++)
+                records[n].history[l] = memory_of(a, b, l);
+            n++;
+        }
+    }
+    migrate_follow(&run->migrate, &run->comm, n / 3, records);
+    restore_contacts(run);
+    migrate_follow(&run->migrate, &run->comm, n - n / 3, records + n / 3);
+    restore_contacts(run);
+    free(records);
+}
+
 /* As after reading a checkpoint: a slice of the ids each, with all records that concern it. */
 static void begin(struct run *run)
 {
@@ -175,18 +199,6 @@ static void begin(struct run *run)
         }
         sphere_complete(&run->spheres, i, &materials);
     }
-    for (int a = 0; a < N; a++) {
-        for (int b = a + 1; b < N; b++) {
-            const bool here = (a >= first && a < past) || (b >= first && b < past);
-            if (!here || !touches(run, a, b))
-                continue;
-            ARRAY_GROW(migrate->contacts, migrate->n_contacts + 1, migrate->contact_capacity);
-            struct contact_record *record = &migrate->contacts[migrate->n_contacts++];
-            *record = (struct contact_record){.first_id = a, .second_id = b};
-            for (int l = 0; l < CONTACT_LANES; l++)
-                record->history[l] = memory_of(a, b, l);
-        }
-    }
     for (int id = first; id < past; id++) {
         if (!holds_facet(id))
             continue;
@@ -198,6 +210,7 @@ static void begin(struct run *run)
     }
     cut(run, 0);
     redistribute(run, NULL, true, true);
+    follow(run, first, past);
 }
 
 static void end(struct run *run)

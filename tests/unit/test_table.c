@@ -148,6 +148,50 @@ TEST(parts_give_the_file_of_the_whole)
         free(paths[k]);
 }
 
+/* All ranks' rows of all parts are those of the whole, in their places, each once. */
+static void expect_parts(const struct comm *comm, const char *path, const struct table *whole,
+                         int64_t n_parts)
+{
+    struct table table;
+    struct h5 h5;
+    int64_t n = 0, expected = 0;
+    describe(&table);
+    h5_open(&h5, path);
+    table_measure(&table, &h5);
+    for (int64_t part = 0; part < n_parts; part++) {
+        table_read_part(&table, &h5, comm, N_IDS, part, n_parts);
+        const int64_t n_here = total(comm, table.n);
+        n += n_here;
+        EXPECT(n_here <= (whole->n / TABLE_BLOCK / n_parts + 2) * TABLE_BLOCK);
+        expected += comm_sum_before(comm, table.n);
+        EXPECT(table.n == 0 || table.begin == expected);
+        expected = n;
+        EXPECT(memcmp(table.records, whole->records + (size_t)table.begin * sizeof(struct row),
+                      (size_t)table.n * sizeof(struct row)) == 0);
+    }
+    h5_close(&h5);
+    EXPECT(h5.why == NULL && n == whole->n);
+    free(h5.why);
+    table_clear(&table);
+}
+
+TEST(parts_are_read_as_the_whole)
+{
+    const struct comm comm = comm_world();
+    struct table whole, was;
+    char *path = name_of(&comm, "read");
+    describe(&whole);
+    collect(&whole, &comm, 0, N_IDS);
+    table_arrange(&whole, &comm, N_IDS);
+    write_rows(&comm, path, &whole);
+    read_back(path, &was);
+    for (int64_t n_parts = 1; n_parts < 100; n_parts = 3 * n_parts + 1)
+        expect_parts(&comm, path, &was, n_parts);
+    table_clear(&whole);
+    table_clear(&was);
+    free(path);
+}
+
 int main(int argc, char **argv)
 {
     MPI_Init(&argc, &argv);
