@@ -41,31 +41,37 @@ static void add_triangle(struct circle *circle, struct vec3 from, struct vec3 to
     circle->solid += elementary_atan2(twice, a * b + h * (a + b) + vec3_dot(from, to) + h * h);
 }
 
-/* What lies between the foot and a side of the face, from a vertex to the next; both as seen
- * from the foot. */
-static void add_side(struct circle *circle, struct vec3 from, struct vec3 to)
+static double inside(const struct mesh_border *border, struct vec3 point)
 {
-    const struct vec3 along = vec3_sub(to, from);
-    const double length2 = vec3_dot(along, along), half = vec3_dot(from, along);
-    const double outside = vec3_dot(from, from) - circle->around * circle->around;
-    const double root2 = half * half - length2 * outside;
-    if (!(root2 > 0.0)) {
-        add_sector(circle, from, to);
-        return;
-    }
-    const double root = sqrt(root2);
-    const double enters = (-half - root) / length2, leaves = (-half + root) / length2;
-    const double first = enters > 0.0 ? enters : 0.0, last = leaves < 1.0 ? leaves : 1.0;
+    return vec3_dot(vec3_sub(point, border->from), border->inward);
+}
+
+/* What lies between the foot and a side of the face.  Places on the side are counted from the
+ * one that is nearest to the foot, so that sides much longer than the circle do no harm. */
+static void add_side(struct circle *circle, const struct mesh_border *border, struct vec3 foot)
+{
+    const double length = sqrt(border->length_squared), scale = 1.0 / length;
+    const struct vec3 inward = vec3_scale(scale, border->inward);
+    const struct vec3 along = vec3_cross(inward, circle->normal);
+    const double apart = scale * inside(border, foot);
+    const struct vec3 nearest = vec3_scale(-apart, inward);
+    const double from = -vec3_dot(vec3_sub(foot, border->from), along), to = from + length;
+    const double square = (circle->around - apart) * (circle->around + apart);
+    const double chord = square > 0.0 ? sqrt(square) : 0.0; /* half of it */
+    const double first = from > -chord ? from : -chord, last = to < chord ? to : chord;
+    const struct vec3 start = vec3_axpy(nearest, from, along),
+                      stop = vec3_axpy(nearest, to, along);
     if (!(first < last)) {
-        add_sector(circle, from, to);
+        add_sector(circle, start, stop);
         return;
     }
-    const struct vec3 begin = vec3_axpy(from, first, along), end = vec3_axpy(from, last, along);
-    if (enters > 0.0)
-        add_sector(circle, from, begin);
+    const struct vec3 begin = vec3_axpy(nearest, first, along),
+                      end = vec3_axpy(nearest, last, along);
+    if (from < first)
+        add_sector(circle, start, begin);
     add_triangle(circle, begin, end);
-    if (leaves < 1.0)
-        add_sector(circle, end, to);
+    if (last < to)
+        add_sector(circle, end, stop);
 }
 
 /* A ball's volume behind the plane, in a unit of angle around the foot [m3]. */
@@ -89,11 +95,6 @@ static bool finish(const struct circle *circle, struct vec3 foot, struct contact
         vec3_axpy(vec3_scale(1.0 / 6.0, circle->moment), cube / 3.0, sectors);
     patch->middle = vec3_axpy(foot, 1.0 / patch->area, moment);
     return true;
-}
-
-static double inside(const struct mesh_border *border, struct vec3 point)
-{
-    return vec3_dot(vec3_sub(point, border->from), border->inward);
 }
 
 /* Shares the area out to the vertices by its middle: shape functions are linear. */
@@ -133,11 +134,8 @@ bool contact_patch_cut(const struct mesh *mesh, int face, struct vec3 centre, do
     if (is_whole) {
         circle.angle = 2.0 * PI;
     } else {
-        struct vec3 corners[3];
         for (int k = 0; k < 3; k++)
-            corners[k] = vec3_sub(border[k].from, foot);
-        for (int k = 0; k < 3; k++)
-            add_side(&circle, corners[k], corners[(k + 1) % 3]);
+            add_side(&circle, &border[k], foot);
     }
     if (!finish(&circle, foot, patch))
         return false;

@@ -48,4 +48,5 @@ compare heap heap
 compare mixed mixed
 compare "mixed without ledger" mixed --set contact.ledger=false
 compare machines machines
+compare solids deform
 compare periodic periodic

@@ -77,6 +77,14 @@ result "blocks slide and stop"
 alike slide 3
 result "the same on 3 ranks"
 
+# A spring that is too stiff for its nodes is named, not left to blow up.
+status=0
+tremie 2 run "$scenes/bars.yaml" --out stiff --set bodies.0.touches.stiffness=50 || status=$?
+[ "$status" = 3 ] || why+=" ends with status $status;"
+says "energy balance"
+says "the step is too large"
+result "a contact too stiff for the step"
+
 # The tube's wall meets itself when the blocks are 8 mm apart, and takes up what they press it with.
 run 1 squeeze squeeze
 near "the work at 0.115 s" "$(columns squeeze '$at["time_s"] > 0.1145 && n++ == 0 { print $at["work_bodies_J"] }')" 0.0422 0.003

@@ -59,7 +59,7 @@ static struct covered cover(const struct mesh *mesh, struct vec3 centre, double 
             middle = vec3_axpy(middle, patch.weights[k] / patch.area, place);
             sum += patch.weights[k];
         }
-        EXPECT_NEAR(sum, patch.area, 1e-14 * patch.area);
+        EXPECT_NEAR(sum, patch.area, 1e-12 * patch.area);
         EXPECT_NEAR(vec3_norm(vec3_sub(middle, patch.middle)), 0.0, 1e-9);
         all.area += patch.area;
         all.volume += patch.volume;
