@@ -35,7 +35,7 @@ say = $(if $(V),,@printf '%-8s %s\n' '$(1)' '$(2)';)
 main := src/run/main.c
 # Compiled once for each instruction set: files that say KERNEL_ISA or include what does.
 kernels := src/contact/facet_kernel_blocks.c src/contact/pair_kernel_blocks.c \
-    src/physics/integrate_rows.c src/physics/solid_element_blocks.c
+    src/physics/integrate_rows.c src/physics/shell_element_blocks.c src/physics/solid_element_blocks.c
 library_sources := $(filter-out $(main) $(kernels),$(sort $(wildcard src/*/*.c)))
 library_objects := $(library_sources:%.c=$(BUILD)/%.o)
 kernel_objects := $(foreach isa,$(kernel_isas),$(kernels:%.c=$(BUILD)/%_$(isa).o))
