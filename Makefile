@@ -56,7 +56,7 @@ case_shared := $(patsubst %.c,$(BUILD)/%.o,\
     $(filter-out $(case_sources),$(sort $(wildcard tests/verification/*.c))))
 verification_cases := $(patsubst tests/verification/%.c,$(BUILD)/tests/%,$(case_sources))
 
-# What elements of solids cost, a program of its own.
+# What finite elements cost, a program of its own.
 element_bench := $(BUILD)/tests/bench/elements.o
 
 # The charts' own program: charts/*.c and what cases of verification share.
@@ -135,7 +135,7 @@ bench-peers:
 	@$(MAKE) --no-print-directory all
 	@BIN='$(BIN)' tests/bench/run --peers
 
-##  make bench-elements  measure what elements of solids cost on one core, for each instruction set
+##  make bench-elements  measure what finite elements cost on one core, for each instruction set
 bench-elements:
 	@config/setup run
 	@$(MAKE) --no-print-directory $(BUILD)/tests/elements

@@ -1,6 +1,6 @@
 /*
  * Stress in layers of shells and membranes: plane, elastic, with plastic flow that is brought
- * back to von Mises's ellipse (THEORY.md, 13.4).
+ * back to von Mises's ellipse (THEORY.md, 13.5).
  *
  * Written in lanes (physics/lanes.h).
  */
@@ -12,9 +12,9 @@
 #include "physics/solid_element.h"
 #include "physics/solid_law.h"
 
-/* Newton steps of the return.  From solid_law_flow()'s flow, always below the right one, they
- * rise to it; four leave 1e-9 of it where a trial is twice the yield stress, and rounding in
- * the small steps of explicit motion. */
+/* Newton steps of the return.  They rise from solid_law_flow()'s flow, which is never above the
+ * right one; four leave 1e-12 of the strain where a trial is twice the yield stress, 1e-6 where
+ * it is twenty times that. */
 enum { SHELL_LAW_ROUNDS = 4 };
 
 /* What resists a corner's turning about the normal beside its element's, over mu volume:
