@@ -145,9 +145,11 @@ static void build_shells(struct solid *solid, const struct solid_parts *mesh)
     solid->layers = mesh->layers;
     solid->shell = array_allocate_rows(n + 1, sizeof *solid->shell);
     for (size_t e = 0; e < n; e++)
-        if (shell_element_is(solid->shape[e]))
+        if (shell_element_is(solid->shape[e])) {
+            CHECK(mesh->thickness[e] > 0.0, "element %zu is %g m thick", e, mesh->thickness[e]);
             solid->shell[e] =
                 shell_element_begin(mesh->thickness[e], &solid->materials[solid->material[e]]);
+        }
     solid->shell[n] = shell_element_begin(1.0, &solid->materials[0]);
     if (turn)
         solid_turns_init(&solid->turns, solid->n_nodes);
@@ -432,7 +434,7 @@ static void add_part(struct solid *solid, int part)
             continue;
         const struct solid_element_force *force = &solid->force[solid->slot[e]];
         const int n = solid_element_corners(solid->shape[e]);
-        if (shell_element_turns(solid->shape[e])) {
+        if (solid->turns.n_nodes > 0 && shell_element_turns(solid->shape[e])) {
             add_shell(solid, e, n, force);
             continue;
         }

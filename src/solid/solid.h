@@ -38,8 +38,9 @@ struct solid_material {
     double density;             /* [kg/m3] */
     double young, poisson;      /* [Pa], [-] */
     double damping;             /* stiffness-proportional [s] */
-    double hourglass_stiffness; /* share of the stiffness of a wave across a cube [-] */
-    double hourglass_viscosity; /* share of critical damping [-] */
+    double hourglass_stiffness; /* share of the stiffness of a wave across a cube; of shells and
+                                   membranes, of what full integration has [-] */
+    double hourglass_viscosity; /* share of critical damping; not of shells and membranes [-] */
     int n_yield; /* points of the yield curve, the first at strain 0; 0: elastic */
     const struct solid_yield_point *yield;
     double hardening; /* slope behind the last point [Pa] */

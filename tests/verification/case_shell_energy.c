@@ -1,6 +1,6 @@
 /*
- * Energy of shells and membranes: work of elements, loads, moments, supports, gravity and damping
- * against motion, and what elements took up against where it is.
+ * Energy of shells and membranes: work of elements, loads, moments, supports, gravity and
+ * damping against motion, and what elements took up against where it is.
  */
 #include <math.h>
 #include <stdio.h>

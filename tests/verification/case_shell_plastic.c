@@ -1,6 +1,7 @@
 /*
- * Plastic shells and membranes: a strip bent until all of its thickness flows, and strips pulled
- * far, whose stress follows the yield curve and whose volume only changes as stress says.
+ * Plastic shells and membranes: a strip bent until all of its thickness flows, and strips
+ * pulled far, whose stress follows the yield curve and whose volume only changes as stress
+ * says.
  */
 #include <math.h>
 #include <stdio.h>
