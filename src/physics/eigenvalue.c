@@ -31,7 +31,7 @@ static void square(int n, double (*g)[EIGENVALUE_SIZE], double scale)
 double eigenvalue_largest(int n, const double *matrix)
 {
     enum { SQUARINGS = 12 };
-    double g[EIGENVALUE_SIZE][EIGENVALUE_SIZE], scale[SQUARINGS + 1], root = 1.0;
+    double g[EIGENVALUE_SIZE][EIGENVALUE_SIZE] = {{0.0}}, scale[SQUARINGS + 1], root = 1.0;
     for (int i = 0; i < n; i++)
         memcpy(g[i], matrix + (size_t)i * (size_t)n, (size_t)n * sizeof *matrix);
     for (int round = 0; round <= SQUARINGS; round++) {

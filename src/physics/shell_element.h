@@ -28,7 +28,7 @@ struct shell_element_state {
 } __attribute__((aligned(64)));
 
 /* Places of the points through the thickness, -1 to 1, and their weights, together 1:
- * Gauss's. */
+ * Gauss's.  There are 1 to SHELL_ELEMENT_LAYERS. */
 struct shell_element_points {
     double place[SHELL_ELEMENT_LAYERS], weight[SHELL_ELEMENT_LAYERS];
 };

@@ -151,6 +151,8 @@ static void build_shells(struct solid *solid, const struct solid_parts *mesh)
                 shell_element_begin(mesh->thickness[e], &solid->materials[solid->material[e]]);
         }
     solid->shell[n] = shell_element_begin(1.0, &solid->materials[0]);
+    CHECK(!turn || (solid->layers >= 1 && solid->layers <= SHELL_ELEMENT_LAYERS),
+          "a shell of %d layers", solid->layers);
     if (turn)
         solid_turns_init(&solid->turns, solid->n_nodes);
 }

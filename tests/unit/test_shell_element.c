@@ -532,7 +532,7 @@ TEST(bounds_on_frequencies_hold_and_are_near)
         struct solid_material material = elastic;
         struct shell_sheet sheet;
         struct solid solid;
-        const double long_side = 1.0 + round / 16;
+        const double long_side = (double)(1 + round / 16);
         material.hourglass_stiffness = round % 3 == 0 ? 1.0 : 0.1;
         shell_sheet_build(&sheet, 1, 1, (const double[2]){long_side, 1.0}, shape,
                           round % 8 < 4 ? 0.01 : 0.5, 3);
