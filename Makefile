@@ -35,7 +35,7 @@ say = $(if $(V),,@printf '%-8s %s\n' '$(1)' '$(2)';)
 main := src/run/main.c
 # Compiled once for each instruction set: files that say KERNEL_ISA or include what does.
 kernels := src/contact/facet_kernel_blocks.c src/contact/pair_kernel_blocks.c \
-    src/physics/integrate_rows.c src/physics/solid_element_blocks.c
+    src/physics/integrate_rows.c src/physics/shell_element_blocks.c src/physics/solid_element_blocks.c
 library_sources := $(filter-out $(main) $(kernels),$(sort $(wildcard src/*/*.c)))
 library_objects := $(library_sources:%.c=$(BUILD)/%.o)
 kernel_objects := $(foreach isa,$(kernel_isas),$(kernels:%.c=$(BUILD)/%_$(isa).o))
@@ -56,7 +56,7 @@ case_shared := $(patsubst %.c,$(BUILD)/%.o,\
     $(filter-out $(case_sources),$(sort $(wildcard tests/verification/*.c))))
 verification_cases := $(patsubst tests/verification/%.c,$(BUILD)/tests/%,$(case_sources))
 
-# What elements of solids cost, a program of its own.
+# What finite elements cost, a program of its own.
 element_bench := $(BUILD)/tests/bench/elements.o
 
 # The charts' own program: charts/*.c and what cases of verification share.
@@ -135,7 +135,7 @@ bench-peers:
 	@$(MAKE) --no-print-directory all
 	@BIN='$(BIN)' tests/bench/run --peers
 
-##  make bench-elements  measure what elements of solids cost on one core, for each instruction set
+##  make bench-elements  measure what finite elements cost on one core, for each instruction set
 bench-elements:
 	@config/setup run
 	@$(MAKE) --no-print-directory $(BUILD)/tests/elements

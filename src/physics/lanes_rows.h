@@ -55,6 +55,27 @@ LANES_INLINE void lanes_transpose(lanes r[8])
         lanes_transpose_square(r + LANES_WIDTH * part);
 }
 
+/* Rows of as many elements, 8 doubles from `at` of each, as 8 components; and back. */
+LANES_INLINE void lanes_take_rows(const double *const at[], lanes row[8])
+{
+#pragma GCC unroll 8
+    for (int l = 0; l < LANES_WIDTH; l++)
+#pragma GCC unroll 4
+        for (int p = 0; p < LANES_PARTS; p++)
+            row[LANES_WIDTH * p + l] = lanes_load(at[l] + LANES_WIDTH * p);
+    lanes_transpose(row);
+}
+
+LANES_INLINE void lanes_give_rows(double *const at[], lanes row[8])
+{
+    lanes_transpose(row);
+#pragma GCC unroll 8
+    for (int l = 0; l < LANES_WIDTH; l++)
+#pragma GCC unroll 4
+        for (int p = 0; p < LANES_PARTS; p++)
+            lanes_store(at[l] + LANES_WIDTH * p, row[LANES_WIDTH * p + l]);
+}
+
 #endif
 
 #endif

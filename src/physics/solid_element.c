@@ -10,13 +10,17 @@
 
 #include <math.h>
 
+#include "physics/eigenvalue.h"
+#include "physics/shell_element.h"
 #include "physics/solid_element_blocks.h"
 #include "physics/solid_gradient.h"
 #include "physics/solid_law.h"
 
 struct solid_element_kernel solid_element_choose(enum isa isa)
 {
-    return ISA_PICK(isa_choose(isa), solid_element_blocks);
+    struct solid_element_kernel kernel = ISA_PICK(isa_choose(isa), solid_element_blocks);
+    shell_element_choose(isa, &kernel);
+    return kernel;
 }
 
 void solid_element_elastic(struct solid_element_material *material, double young,
@@ -53,7 +57,11 @@ double solid_element_yield_stress(const struct solid_element_material *material,
 
 int solid_element_corners(enum solid_element_shape shape)
 {
-    return shape == SOLID_ELEMENT_HEXAHEDRON ? 8 : 4;
+    static const int corners[SOLID_ELEMENT_N_SHAPES] = {
+        [SOLID_ELEMENT_HEXAHEDRON] = 8,    [SOLID_ELEMENT_TETRAHEDRON] = 4,
+        [SOLID_ELEMENT_SHELL_QUAD] = 4,    [SOLID_ELEMENT_SHELL_TRIANGLE] = 3,
+        [SOLID_ELEMENT_MEMBRANE_QUAD] = 4, [SOLID_ELEMENT_MEMBRANE_TRIANGLE] = 3};
+    return corners[shape];
 }
 
 static double gradient_of(enum solid_element_shape shape, double x[][3], double b[][3])
@@ -69,34 +77,6 @@ double solid_element_volume(enum solid_element_shape shape, double x[][3])
 }
 
 /* ------------------------------------------------------------------------------- the step */
-
-/* The largest eigenvalue of a symmetric matrix without negative ones, or up to three
- * ten-thousandths more: the 4096th root of the trace of its 4096th power. */
-static double largest_eigenvalue(double g[3][3])
-{
-    enum { SQUARINGS = 12 };
-    double root = 1.0, scale[SQUARINGS + 1];
-    for (int round = 0; round <= SQUARINGS; round++) {
-        scale[round] = g[0][0] + g[1][1] + g[2][2];
-        if (!(scale[round] > 0.0))
-            return scale[round]; /* no strain resists, or no number */
-        if (round == SQUARINGS)
-            break;
-        double next[3][3];
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++) {
-                next[i][j] = 0.0;
-                for (int k = 0; k < 3; k++)
-                    next[i][j] += g[i][k] / scale[round] * (g[k][j] / scale[round]);
-            }
-        for (int i = 0; i < 3; i++)
-            for (int j = 0; j < 3; j++)
-                g[i][j] = next[i][j];
-    }
-    for (int round = SQUARINGS; round >= 0; round--)
-        root = scale[round] * (round == SQUARINGS ? 1.0 : sqrt(root));
-    return root;
-}
 
 /* What couples uniform strain with hourglass modes: the sum of squares of gamma B^t, and the
  * largest sum of squares of gamma.  (12.12) */
@@ -150,7 +130,8 @@ struct solid_element_load solid_element_load(enum solid_element_shape shape, dou
                 g[i][j] += b[c][i] * b[c][j];
     const double trace = g[0][0] + g[1][1] + g[2][2];
     struct solid_element_load load = {
-        .stretch = (lambda * trace + 2.0 * mu * largest_eigenvalue(g)) / (volume * share),
+        .stretch =
+            (lambda * trace + 2.0 * mu * eigenvalue_largest(3, &g[0][0])) / (volume * share),
         .damping = material->damping};
     if (shape == SOLID_ELEMENT_HEXAHEDRON) {
         double length, coupling;

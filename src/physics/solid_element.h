@@ -26,6 +26,10 @@ enum {
 enum solid_element_shape {
     SOLID_ELEMENT_HEXAHEDRON,
     SOLID_ELEMENT_TETRAHEDRON,
+    SOLID_ELEMENT_SHELL_QUAD, /* these four: physics/shell_element.h */
+    SOLID_ELEMENT_SHELL_TRIANGLE,
+    SOLID_ELEMENT_MEMBRANE_QUAD,
+    SOLID_ELEMENT_MEMBRANE_TRIANGLE,
     SOLID_ELEMENT_N_SHAPES
 };
 
@@ -47,10 +51,13 @@ struct solid_element_state {
 } __attribute__((aligned(64)));
 
 /* Forces of an element on its corners' nodes that resist deformation, opposite to what nodes
- * feel: {fx fy fz 0} of each corner [N]. */
+ * feel: {fx fy fz 0} of each corner [N]; of a shell's corner c that at 2 c and its moment
+ * {mx my mz 0} behind it [N m]. */
 struct solid_element_force {
     double corner[SOLID_ELEMENT_CORNERS][4];
 } __attribute__((aligned(64)));
+
+struct shell_element_state;
 
 /* A piece of the yield curve, from its first point on. */
 struct solid_element_yield {
@@ -86,7 +93,11 @@ struct solid_element_work {
     struct solid_element_state *state;
     struct solid_element_force *force; /* n */
     const struct solid_element_material *material;
-    double dt;    /* [s] */
+    /* Of shells and membranes besides: */
+    const struct solid_element_node *spins; /* {wx wy wz -} at n - 1/2; shells only */
+    struct shell_element_state *shells;     /* of each element */
+    int layers;                             /* of shells */
+    double dt;                              /* [s] */
     double since; /* dt, or 0 where stress is already that of x(n): at the start [s] */
     bool failed;  /* out: a volume that is not positive, or a number that is none */
 };

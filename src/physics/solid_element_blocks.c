@@ -12,83 +12,11 @@
 #include <stddef.h>
 
 #include "physics/lanes_rows.h"
+#include "physics/solid_element_rows.h"
 #include "physics/solid_gradient.h"
 #include "physics/solid_law.h"
 
-enum { WIDTH = LANES_WIDTH, PARTS = LANES_PARTS, ROW = 8, MODES = 4 };
-
-/* Rows of as many elements, 8 doubles from `at` of each, as 8 components; and back. */
-LANES_INLINE void take_rows(const double *const at[], lanes row[ROW])
-{
-#pragma GCC unroll 8
-    for (int l = 0; l < WIDTH; l++)
-#pragma GCC unroll 4
-        for (int p = 0; p < PARTS; p++)
-            row[WIDTH * p + l] = lanes_load(at[l] + WIDTH * p);
-    lanes_transpose(row);
-}
-
-LANES_INLINE void give_rows(double *const at[], lanes row[ROW])
-{
-    lanes_transpose(row);
-#pragma GCC unroll 8
-    for (int l = 0; l < WIDTH; l++)
-#pragma GCC unroll 4
-        for (int p = 0; p < PARTS; p++)
-            lanes_store(at[l] + WIDTH * p, row[WIDTH * p + l]);
-}
-
-/* A row of the state of a block's elements. */
-LANES_INLINE void take_state(const struct solid_element_work *work, const int *elements,
-                             int row, lanes into[ROW])
-{
-    const double *at[WIDTH];
-#pragma GCC unroll 8
-    for (int l = 0; l < WIDTH; l++)
-        at[l] = (const double *)&work->state[elements[l]] + (ptrdiff_t)ROW * row;
-    take_rows(at, into);
-}
-
-LANES_INLINE void give_state(const struct solid_element_work *work, const int *elements,
-                             int row, lanes from[ROW])
-{
-    double *at[WIDTH];
-#pragma GCC unroll 8
-    for (int l = 0; l < WIDTH; l++)
-        at[l] = (double *)&work->state[elements[l]] + (ptrdiff_t)ROW * row;
-    give_rows(at, from);
-}
-
-/* Places of the corners, and their motion since the last step. */
-LANES_INLINE void take_corners(const struct solid_element_work *work, const int *elements,
-                               int n_corners, lanes x[][3], lanes moved[][3])
-{
-    const lanes since = lanes_all(work->since);
-#pragma GCC unroll 8
-    for (int c = 0; c < n_corners; c++) {
-        const double *at[WIDTH];
-        lanes row[ROW];
-#pragma GCC unroll 8
-        for (int l = 0; l < WIDTH; l++)
-            at[l] = work->nodes[work->corners[elements[l]][c]].lane;
-        take_rows(at, row);
-#pragma GCC unroll 3
-        for (int i = 0; i < 3; i++) {
-            x[c][i] = row[i];
-            moved[c][i] = row[4 + i] * since;
-        }
-    }
-}
-
-/* Half way back.  (12.3) */
-LANES_INLINE void midway(int n_corners, lanes x[][3], lanes moved[][3], lanes middle[][3])
-{
-#pragma GCC unroll 8
-    for (int c = 0; c < n_corners; c++)
-#pragma GCC unroll 3
-        for (int i = 0; i < 3; i++)
-            middle[c][i] = x[c][i] - moved[c][i] * lanes_all(0.5);
-}
+enum { WIDTH = LANES_WIDTH, ROW = 8, MODES = 4 };
 
 /* Gradient of the motion.  (12.3) */
 LANES_INLINE void motion_gradient(int n_corners, lanes moved[][3], lanes b[][3], lanes volume,
@@ -129,7 +57,7 @@ LANES_INLINE lanes give_forces(struct solid_element_force *force_at, int n_corne
 #pragma GCC unroll 8
         for (int l = 0; l < WIDTH; l++)
             at[l] = force_at[l].corner[c];
-        give_rows(at, row);
+        lanes_give_rows(at, row);
     }
     return odd;
 }
@@ -260,23 +188,23 @@ LANES_INLINE lanes_mask hexahedra(const struct solid_element_work *work, const i
     lanes own[ROW], first[ROW], second[ROW];
     struct hourglass hourglass;
 
-    take_corners(work, elements, 8, x, moved);
-    midway(8, x, moved, middle);
+    solid_element_take_corners(work, elements, 8, x, moved);
+    solid_element_midway(8, x, moved, middle);
     const lanes middle_volume = solid_gradient_hexahedron(middle, b);
     motion_gradient(8, moved, b, middle_volume, gradient);
     hourglass_motion(work, elements, middle, moved, b, middle_volume, gradient, &hourglass);
-    take_state(work, elements, 0, own);
-    take_state(work, elements, 1, first);
-    take_state(work, elements, 2, second);
+    solid_element_take_state(work, elements, 0, own);
+    solid_element_take_state(work, elements, 1, first);
+    solid_element_take_state(work, elements, 2, second);
     solid_law_turn(gradient, turn);
     second[6] += solid_law_stress(work->material, work->dt, gradient, turn, middle_volume,
                                   plastic, own, stress);
     hourglass_resist(&hourglass, turn, first, second, acting);
     const lanes volume = solid_gradient_hexahedron(x, b);
     second[7] = volume;
-    give_state(work, elements, 0, own);
-    give_state(work, elements, 1, first);
-    give_state(work, elements, 2, second);
+    solid_element_give_state(work, elements, 0, own);
+    solid_element_give_state(work, elements, 1, first);
+    solid_element_give_state(work, elements, 2, second);
     hourglass_forces(acting, x, volume, stress, besides);
     const lanes odd = give_forces(force_at, 8, stress, b, besides);
     return not_sound(volume, middle_volume, odd);
@@ -289,19 +217,19 @@ LANES_INLINE lanes_mask tetrahedra(const struct solid_element_work *work, const 
     lanes gradient[3][3], turn[3][3], stress[3][3];
     lanes own[ROW], second[ROW];
 
-    take_corners(work, elements, 4, x, moved);
-    midway(4, x, moved, middle);
+    solid_element_take_corners(work, elements, 4, x, moved);
+    solid_element_midway(4, x, moved, middle);
     const lanes middle_volume = solid_gradient_tetrahedron(middle, b);
     motion_gradient(4, moved, b, middle_volume, gradient);
-    take_state(work, elements, 0, own);
-    take_state(work, elements, 2, second);
+    solid_element_take_state(work, elements, 0, own);
+    solid_element_take_state(work, elements, 2, second);
     solid_law_turn(gradient, turn);
     second[6] += solid_law_stress(work->material, work->dt, gradient, turn, middle_volume,
                                   plastic, own, stress);
     const lanes volume = solid_gradient_tetrahedron(x, b);
     second[7] = volume;
-    give_state(work, elements, 0, own);
-    give_state(work, elements, 2, second);
+    solid_element_give_state(work, elements, 0, own);
+    solid_element_give_state(work, elements, 2, second);
     const lanes odd = give_forces(force_at, 4, stress, b, NULL);
     return not_sound(volume, middle_volume, odd);
 }

@@ -52,6 +52,17 @@ const struct field solid_element_fields[SOLID_ELEMENT_N_FIELDS] = {
                              FIELD_GHOST | FIELD_SAVED | FIELD_PLOTTED},
 };
 
+const struct field solid_shell_fields[SOLID_SHELL_N_FIELDS] = {
+    [SOLID_SHELL_LAYERS] = {"layers", "Pa",
+                            "stress xx yy xy in the element's frame and plastic strain of "
+                            "each of five layers, a step earlier",
+                            FIELD_DOUBLE, 4 * SHELL_ELEMENT_LAYERS, FIELD_GHOST | FIELD_SAVED},
+    [SOLID_SHELL_SHEAR] = {"shear", "Pa", "mean stress xz yz in the element's frame",
+                           FIELD_DOUBLE, 2, FIELD_GHOST | FIELD_SAVED},
+    [SOLID_SHELL_THICKNESS] = {"thickness", "m", "now", FIELD_DOUBLE, 1,
+                               FIELD_GHOST | FIELD_SAVED | FIELD_PLOTTED},
+};
+
 /* Corners of the element that pads: about a cube, of which the first four are a tetrahedron. */
 static const double PADDING[SOLID_ELEMENT_CORNERS][3] = {
     {0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}, {1.0, 1.0, 0.0}, {0.0, 1.0, 0.5},
@@ -123,6 +134,39 @@ static void build_elements(struct solid *solid, const struct solid_parts *mesh)
     solid->element_mass[n] = 1.0;
 }
 
+static void build_shells(struct solid *solid, const struct solid_parts *mesh)
+{
+    const size_t n = (size_t)mesh->n_elements;
+    bool turn = false;
+    for (int e = 0; e < solid->n_elements; e++)
+        turn |= shell_element_turns(solid->shape[e]);
+    if (mesh->thickness == NULL)
+        return;
+    solid->layers = mesh->layers;
+    solid->shell = array_allocate_rows(n + 1, sizeof *solid->shell);
+    for (size_t e = 0; e < n; e++)
+        if (shell_element_is(solid->shape[e])) {
+            CHECK(mesh->thickness[e] > 0.0, "element %zu is %g m thick", e, mesh->thickness[e]);
+            solid->shell[e] =
+                shell_element_begin(mesh->thickness[e], &solid->materials[solid->material[e]]);
+        }
+    solid->shell[n] = shell_element_begin(1.0, &solid->materials[0]);
+    CHECK(!turn || (solid->layers >= 1 && solid->layers <= SHELL_ELEMENT_LAYERS),
+          "a shell of %d layers", solid->layers);
+    if (turn)
+        solid_turns_init(&solid->turns, solid->n_nodes);
+}
+
+/* [m3]; not of shells and membranes that have failed */
+static double volume_of(const struct solid *solid, int element, double x[][3])
+{
+    const enum solid_element_shape shape = solid->shape[element];
+    if (!shell_element_is(shape))
+        return solid_element_volume(shape, x);
+    CHECK(solid->shell != NULL, "element %d has no thickness", element);
+    return shell_element_area(shape, x) * solid->shell[element].thickness;
+}
+
 /* Shares of mass are added in ascending order of elements. */
 static void build_mass(struct solid *solid)
 {
@@ -132,10 +176,17 @@ static void build_mass(struct solid *solid)
         CHECK(solid->material[e] >= 0 && solid->material[e] < solid->n_materials,
               "element %d is of the material %d", e, solid->material[e]);
         solid->alive[e] = 1;
-        solid->element_mass[e] = solid->materials[solid->material[e]].density *
-                                 solid_element_volume(solid->shape[e], x);
+        solid->element_mass[e] =
+            solid->materials[solid->material[e]].density * volume_of(solid, e, x);
         for (int c = 0; c < n; c++)
             solid->mass[solid->corners[e][c]] += solid->element_mass[e] / n;
+        if (shell_element_turns(solid->shape[e])) {
+            const double inertia =
+                shell_element_inertia(solid->shape[e], x, solid->shell[e].thickness);
+            for (int c = 0; c < n; c++)
+                solid->turns.inertia[solid->corners[e][c]] +=
+                    solid->element_mass[e] / n * inertia;
+        }
     }
 }
 
@@ -165,9 +216,12 @@ void solid_create(struct solid *solid, const struct solid_parts *mesh, int n_mat
         solid->materials[m] = build_material(&materials[m]);
     build_nodes(solid, mesh);
     build_elements(solid, mesh);
+    build_shells(solid, mesh);
     build_mass(solid);
     build_meets(solid);
     solid_supports_init(&solid->supports, solid->n_nodes);
+    if (solid->turns.n_nodes > 0)
+        solid_supports_init_turns(&solid->supports);
     solid_assign(solid, NULL);
 }
 
@@ -177,6 +231,7 @@ void solid_destroy(struct solid *solid)
         free(solid->materials[m].yield);
     solid_supports_clear(&solid->supports);
     solid_loads_clear(&solid->loads);
+    solid_turns_clear(&solid->turns);
     free(solid->reference);
     free(solid->node);
     free(solid->mass);
@@ -191,6 +246,7 @@ void solid_destroy(struct solid *solid)
     free(solid->alive);
     free(solid->element_mass);
     free(solid->state);
+    free(solid->shell);
     free(solid->first);
     free(solid->meets);
     free(solid->materials);
@@ -248,6 +304,16 @@ struct field_view solid_element_view(const struct solid *solid, enum solid_eleme
         return (struct field_view){NULL, 0};
     }
 #undef VIEW
+}
+
+struct field_view solid_shell_view(const struct solid *solid, enum solid_shell_field field)
+{
+    static const size_t offset[SOLID_SHELL_N_FIELDS] = {
+        [SOLID_SHELL_LAYERS] = offsetof(struct shell_element_state, layer),
+        [SOLID_SHELL_SHEAR] = offsetof(struct shell_element_state, shear),
+        [SOLID_SHELL_THICKNESS] = offsetof(struct shell_element_state, thickness)};
+    return (struct field_view){(unsigned char *)solid->shell + offset[field],
+                               sizeof *solid->shell};
 }
 
 int solid_corner_places(const struct solid *solid, int element,
@@ -362,6 +428,18 @@ void solid_kill(struct solid *solid, int element)
     solid->alive[element] = 0;
     memset(solid->state[element].stress, 0, sizeof solid->state[element].stress);
     memset(solid->state[element].hourglass, 0, sizeof solid->state[element].hourglass);
+    if (shell_element_is(solid->shape[element])) {
+        struct shell_element_state *shell = &solid->shell[element];
+        memset(shell->layer, 0, sizeof shell->layer);
+        memset(shell->shear, 0, sizeof shell->shear);
+    }
+}
+
+void solid_add_mass(struct solid *solid, int node, double mass, double inertia)
+{
+    solid->mass[node] += mass;
+    if (solid->turns.n_nodes > 0 && solid->turns.inertia[node] > 0.0)
+        solid->turns.inertia[node] += inertia;
 }
 
 bool solid_counts(const struct solid *solid, int element)
@@ -370,6 +448,18 @@ bool solid_counts(const struct solid *solid, int element)
 }
 
 /* ------------------------------------------------------------------------------- the step */
+
+static void add_shell(struct solid *solid, int e, int n,
+                      const struct solid_element_force *force)
+{
+    for (int c = 0; c < n; c++) {
+        const int i = solid->corners[e][c];
+        for (int d = 0; d < 3; d++) {
+            solid->internal[i][d] -= force->corner[2 * c][d];
+            solid->turns.internal[i][d] -= force->corner[2 * c + 1][d];
+        }
+    }
+}
 
 /* Adds what the elements of a part do to their nodes, in ascending order of elements. */
 static void add_part(struct solid *solid, int part)
@@ -380,6 +470,10 @@ static void add_part(struct solid *solid, int part)
             continue;
         const struct solid_element_force *force = &solid->force[solid->slot[e]];
         const int n = solid_element_corners(solid->shape[e]);
+        if (solid->turns.n_nodes > 0 && shell_element_turns(solid->shape[e])) {
+            add_shell(solid, e, n, force);
+            continue;
+        }
         for (int c = 0; c < n; c++) {
             double *sum = solid->internal[solid->corners[e][c]];
             for (int d = 0; d < 3; d++)
@@ -403,6 +497,9 @@ static int compute_part(struct solid *solid, int k, int64_t step, double dt, boo
                                           .state = solid->state,
                                           .force = force,
                                           .material = &solid->materials[list->material],
+                                          .spins = solid->turns.spin,
+                                          .shells = solid->shell,
+                                          .layers = solid->layers,
                                           .dt = dt,
                                           .since = step > 0 ? dt : 0.0};
         solid->kernel.apply[list->shape](&work);
@@ -420,9 +517,12 @@ bool solid_forces(struct solid *solid, int64_t step, double dt)
         memset(solid->internal[solid->here[k]], 0, sizeof *solid->internal);
         memset(solid->external[solid->here[k]], 0, sizeof *solid->external);
     }
+    solid_turns_begin(&solid->turns);
     for (int k = 0; k < solid->n_lists;)
         k = compute_part(solid, k, step, dt, &failed);
     solid_loads_apply(solid, (double)step * dt, solid->external);
+    if (solid->turns.n_nodes > 0)
+        solid_loads_apply_moments(solid, (double)step * dt, solid->turns.external);
     return !failed;
 }
 
@@ -536,4 +636,6 @@ void solid_move(struct solid *solid, int64_t step, double dt)
         memcpy(solid_velocity(solid, i), advance.velocity, sizeof advance.velocity);
         memset(solid->contact[i], 0, sizeof solid->contact[i]);
     }
+    if (solid->turns.n_nodes > 0)
+        solid_turns_move(solid, step, dt);
 }

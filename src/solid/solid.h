@@ -1,6 +1,7 @@
 /*
  * A deformable solid: nodes, elements between them, what holds and loads it; one time step
- * (THEORY.md, section 12).
+ * (THEORY.md, sections 12 and 13).  Its elements may be hexahedra and tetrahedra, and
+ * quadrilaterals and triangles of shells and membranes, side by side on the same nodes.
  *
  * All of the solid is in memory; solid_assign() says which nodes this rank moves.  It then
  * computes every element that has one of them for a corner, and needs places and velocities of
@@ -15,7 +16,8 @@
  *     solid_move()       velocities at n + 1/2, places at n + 1; clears `contact`
  *
  * What must be saved for the next solid_forces() stands in solid_node_fields[] and
- * solid_element_fields[].  Nothing here is collective.
+ * solid_element_fields[]; where there are shells or membranes also in solid_shell_fields[], and
+ * where nodes turn (solid_turn.h) in solid_turn_fields[].  Nothing here is collective.
  */
 #ifndef TREMIE_SOLID_SOLID_H
 #define TREMIE_SOLID_SOLID_H
@@ -25,17 +27,20 @@
 
 #include "base/field.h"
 #include "base/vec3.h"
+#include "physics/shell_element.h"
 #include "physics/solid_element.h"
 #include "solid/solid_load.h"
 #include "solid/solid_support.h"
+#include "solid/solid_turn.h"
 
 /* What a solid is made of, as people give it. */
 struct solid_material {
     double density;             /* [kg/m3] */
     double young, poisson;      /* [Pa], [-] */
     double damping;             /* stiffness-proportional [s] */
-    double hourglass_stiffness; /* share of the stiffness of a wave across a cube [-] */
-    double hourglass_viscosity; /* share of critical damping [-] */
+    double hourglass_stiffness; /* share of the stiffness of a wave across a cube; of shells and
+                                   membranes, of what full integration has [-] */
+    double hourglass_viscosity; /* share of critical damping; not of shells and membranes [-] */
     int n_yield; /* points of the yield curve, the first at strain 0; 0: elastic */
     const struct solid_yield_point *yield;
     double hardening; /* slope behind the last point [Pa] */
@@ -54,6 +59,9 @@ struct solid_parts {
     const enum solid_element_shape *shapes;
     int (*corners)[SOLID_ELEMENT_CORNERS]; /* positive volumes: physics/solid_gradient.h */
     const int *materials;                  /* of each element; NULL: all 0 */
+    /* Of shells and membranes: */
+    const double *thickness; /* of each element [m]; NULL: there are none */
+    int layers;              /* points through the thickness of shells, 1 to 5 */
 };
 
 /* What works on nodes, and so on the solid. */
@@ -97,6 +105,8 @@ struct solid {
     int32_t *alive;
     double *element_mass; /* [kg] */
     struct solid_element_state *state;
+    int layers;                        /* of shells */
+    struct shell_element_state *shell; /* of each element; NULL: neither shells nor membranes */
     int *first; /* of each node: where its corners begin in `meets`; n_nodes + 1 */
     int *meets; /* element * SOLID_ELEMENT_CORNERS + corner, ascending */
 
@@ -104,8 +114,9 @@ struct solid {
     struct solid_element_material *materials;
     struct solid_supports supports;
     struct solid_loads loads;
-    double gravity[3]; /* now [m/s2] */
-    double damping;    /* mass-proportional [1/s] */
+    struct solid_turns turns; /* of nodes of shells */
+    double gravity[3];        /* now [m/s2] */
+    double damping;           /* mass-proportional [1/s] */
 
     struct solid_element_kernel kernel;
     int n_lists, lists_capacity; /* in ascending order of parts */
@@ -138,8 +149,17 @@ enum solid_element_field {
     SOLID_ELEMENT_N_FIELDS
 };
 
+/* Of solids with shells or membranes besides. */
+enum solid_shell_field {
+    SOLID_SHELL_LAYERS,
+    SOLID_SHELL_SHEAR,
+    SOLID_SHELL_THICKNESS,
+    SOLID_SHELL_N_FIELDS
+};
+
 extern const struct field solid_node_fields[SOLID_NODE_N_FIELDS];
 extern const struct field solid_element_fields[SOLID_ELEMENT_N_FIELDS];
+extern const struct field solid_shell_fields[SOLID_SHELL_N_FIELDS];
 
 /* At rest and without stress at the mesh's places, all of it moved here. */
 void solid_create(struct solid *solid, const struct solid_parts *mesh, int n_materials,
@@ -149,6 +169,7 @@ void solid_destroy(struct solid *solid);
 /* Where a field of the tables lies: node or element 0 first. */
 struct field_view solid_node_view(const struct solid *solid, enum solid_node_field field);
 struct field_view solid_element_view(const struct solid *solid, enum solid_element_field field);
+struct field_view solid_shell_view(const struct solid *solid, enum solid_shell_field field);
 
 /* Chooses the nodes that this rank moves (NULL: all) and lists the living elements that are
  * computed for them.  Due again after solid_kill() and after `alive` was read from a file. */
@@ -158,6 +179,9 @@ void solid_assign(struct solid *solid, const bool *moves);
 void solid_forget(struct solid *solid, const bool *keep);
 /* The element resists nothing from now on; its mass stays with its nodes. */
 void solid_kill(struct solid *solid, int element);
+/* Puts a mass on a node, and inertia against turning, which counts where it turns [kg],
+ * [kg m2]. */
+void solid_add_mass(struct solid *solid, int node, double mass, double inertia);
 /* Is this rank the one that counts the element?  The one that moves its first corner. */
 bool solid_counts(const struct solid *solid, int element);
 

@@ -12,6 +12,8 @@ static void add_node(const struct solid *solid, int i, int64_t step, double dt,
     solid_power(solid, i, &advance, v, power);
     for (int k = 0; k < 3; k++)
         kinetic += 0.5 * solid->mass[i] * v[k] * advance.velocity[k];
+    if (solid->turns.n_nodes > 0)
+        kinetic += solid_turns_power(solid, i, dt, power);
     exact_sum_add(&energies->sums[SOLID_ENERGY_KINETIC], kinetic);
     for (int w = 0; w < SOLID_N_WORKS; w++)
         exact_sum_add(&energies->sums[SOLID_ENERGY_INTERNAL + w],
@@ -21,9 +23,13 @@ static void add_node(const struct solid *solid, int i, int64_t step, double dt,
 static void add_element(const struct solid *solid, int e, struct solid_energies *energies)
 {
     const struct solid_element_state *state = &solid->state[e];
-    const double terms[] = {solid_element_energy(state, &solid->materials[solid->material[e]]),
-                            state->plastic_work, state->hourglass_work, state->hourglass_damped,
-                            state->damped};
+    const struct solid_element_material *material = &solid->materials[solid->material[e]];
+    const double elastic = shell_element_is(solid->shape[e])
+                               ? shell_element_energy(solid->shape[e], state, &solid->shell[e],
+                                                      solid->layers, material)
+                               : solid_element_energy(state, material);
+    const double terms[] = {elastic, state->plastic_work, state->hourglass_work,
+                            state->hourglass_damped, state->damped};
     for (int k = 0; k < (int)(sizeof terms / sizeof *terms); k++)
         exact_sum_add(&energies->sums[SOLID_ENERGY_ELASTIC + k], terms[k]);
 }

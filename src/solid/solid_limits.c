@@ -32,6 +32,16 @@ static double largest_share(const struct solid *solid, int element, const double
     return most;
 }
 
+static struct solid_element_load load_of(const struct solid *solid, int element, double x[][3])
+{
+    const struct solid_element_material *material = &solid->materials[solid->material[element]];
+    const double mass = solid->element_mass[element];
+    if (!shell_element_is(solid->shape[element]))
+        return solid_element_load(solid->shape[element], x, mass, material);
+    return shell_element_load(solid->shape[element], x, mass, solid->shell[element].thickness,
+                              solid->layers, material);
+}
+
 struct solid_limits solid_limits_find(const struct solid *solid, const double *stiffness,
                                       const double *damping)
 {
@@ -41,8 +51,7 @@ struct solid_limits solid_limits_find(const struct solid *solid, const double *s
             continue;
         double x[SOLID_ELEMENT_CORNERS][3];
         solid_corner_places(solid, e, x);
-        const struct solid_element_load load = solid_element_load(
-            solid->shape[e], x, solid->element_mass[e], &solid->materials[solid->material[e]]);
+        const struct solid_element_load load = load_of(solid, e, x);
         const double step = solid_element_critical_step(
             &load, largest_share(solid, e, stiffness), largest_share(solid, e, damping));
         if (step < limits.step)
@@ -74,6 +83,9 @@ static double least_volume(const struct solid *solid, int element, double dt)
         for (int k = 0; k < 3; k++)
             middle[c][k] =
                 x[c][k] - solid_velocity(solid, solid->corners[element][c])[k] * dt * 0.5;
+    if (shell_element_is(solid->shape[element]))
+        return shell_element_facing(solid->shape[element], x, middle) *
+               solid->shell[element].thickness;
     const double now = solid_element_volume(solid->shape[element], x),
                  before = solid_element_volume(solid->shape[element], middle);
     return now < before || now != now ? now : before;

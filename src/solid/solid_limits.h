@@ -24,7 +24,8 @@ struct solid_limits solid_limits_find(const struct solid *solid, const double *s
 
 enum solid_limits_failure {
     SOLID_LIMITS_FINE,
-    SOLID_LIMITS_INVERTED, /* volume not positive, at the step or half a step back */
+    SOLID_LIMITS_INVERTED, /* volume not positive, at the step or half a step back; a shell or
+                              membrane without area or thickness, or over itself */
     SOLID_LIMITS_NOT_A_NUMBER,
     SOLID_LIMITS_HOURGLASS, /* more energy in hourglass modes than should be */
 };

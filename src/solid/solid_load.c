@@ -39,15 +39,26 @@ static void append(struct solid_loads *loads, struct solid_load load,
     loads->list[loads->n++] = load;
 }
 
+static void add_to_nodes(struct solid_loads *loads, enum solid_load_kind kind,
+                         struct vec3 force, const struct solid_table *table, int n,
+                         const int *nodes)
+{
+    append(loads,
+           (struct solid_load){
+               .kind = kind, .force = force, .n = n, .nodes = copied(nodes, n, sizeof *nodes)},
+           table);
+}
+
 void solid_loads_add_force(struct solid_loads *loads, struct vec3 force,
                            const struct solid_table *table, int n, const int *nodes)
 {
-    append(loads,
-           (struct solid_load){.kind = SOLID_LOAD_FORCE,
-                               .force = force,
-                               .n = n,
-                               .nodes = copied(nodes, n, sizeof *nodes)},
-           table);
+    add_to_nodes(loads, SOLID_LOAD_FORCE, force, table, n, nodes);
+}
+
+void solid_loads_add_moment(struct solid_loads *loads, struct vec3 moment,
+                            const struct solid_table *table, int n, const int *nodes)
+{
+    add_to_nodes(loads, SOLID_LOAD_MOMENT, moment, table, n, nodes);
 }
 
 void solid_loads_add_pressure(struct solid_loads *loads, double pressure,
@@ -107,7 +118,16 @@ void solid_loads_apply(const struct solid *solid, double time, double (*force)[3
         const double factor = solid_table_value(&load->table, time);
         if (load->kind == SOLID_LOAD_FORCE)
             apply_force(solid, load, factor, force);
-        else
+        else if (load->kind == SOLID_LOAD_PRESSURE)
             apply_pressure(solid, load, factor, force);
+    }
+}
+
+void solid_loads_apply_moments(const struct solid *solid, double time, double (*moment)[3])
+{
+    for (int k = 0; k < solid->loads.n; k++) {
+        const struct solid_load *load = &solid->loads.list[k];
+        if (load->kind == SOLID_LOAD_MOMENT)
+            apply_force(solid, load, solid_table_value(&load->table, time), moment);
     }
 }

@@ -17,6 +17,15 @@ void solid_supports_init(struct solid_supports *supports, int n_nodes)
             supports->of_node[i][k] = -1;
 }
 
+void solid_supports_init_turns(struct solid_supports *supports)
+{
+    supports->turn_of_node =
+        array_allocate((size_t)supports->n_nodes, sizeof *supports->turn_of_node);
+    for (int i = 0; i < supports->n_nodes; i++)
+        for (int k = 0; k < 3; k++)
+            supports->turn_of_node[i][k] = -1;
+}
+
 void solid_supports_clear(struct solid_supports *supports)
 {
     for (int s = 0; s < supports->n; s++) {
@@ -25,6 +34,7 @@ void solid_supports_clear(struct solid_supports *supports)
     }
     free(supports->list);
     free(supports->of_node);
+    free(supports->turn_of_node);
     *supports = (struct solid_supports){0};
 }
 
@@ -34,9 +44,9 @@ static void append(struct solid_supports *supports, const struct solid_support *
     supports->list[supports->n++] = *support;
 }
 
-void solid_supports_add(struct solid_supports *supports, enum solid_support_kind kind,
-                        int direction, const struct solid_table *table, int n_nodes,
-                        const int *nodes)
+static void hold(struct solid_supports *supports, int (*of_node)[3],
+                 enum solid_support_kind kind, int direction, const struct solid_table *table,
+                 int n_nodes, const int *nodes)
 {
     CHECK(direction >= 0 && direction < 3, "there is no direction %d", direction);
     struct solid_support support = {.kind = kind, .direction = direction};
@@ -44,7 +54,22 @@ void solid_supports_add(struct solid_supports *supports, enum solid_support_kind
         support.table = solid_table_copy(table);
     append(supports, &support);
     for (int k = 0; k < n_nodes; k++)
-        supports->of_node[nodes[k]][direction] = supports->n - 1;
+        of_node[nodes[k]][direction] = supports->n - 1;
+}
+
+void solid_supports_add(struct solid_supports *supports, enum solid_support_kind kind,
+                        int direction, const struct solid_table *table, int n_nodes,
+                        const int *nodes)
+{
+    hold(supports, supports->of_node, kind, direction, table, n_nodes, nodes);
+}
+
+void solid_supports_add_turn(struct solid_supports *supports, enum solid_support_kind kind,
+                             int direction, const struct solid_table *table, int n_nodes,
+                             const int *nodes)
+{
+    CHECK(supports->turn_of_node != NULL, "no node turns about the axis %d", direction);
+    hold(supports, supports->turn_of_node, kind, direction, table, n_nodes, nodes);
 }
 
 void solid_supports_add_motion(struct solid_supports *supports, int n_motions,
@@ -55,8 +80,11 @@ void solid_supports_add_motion(struct solid_supports *supports, int n_motions,
     support.places = array_allocate((size_t)n_motions, sizeof *support.places);
     append(supports, &support);
     for (int k = 0; k < n_nodes; k++)
-        for (int direction = 0; direction < 3; direction++)
+        for (int direction = 0; direction < 3; direction++) {
             supports->of_node[nodes[k]][direction] = supports->n - 1;
+            if (supports->turn_of_node != NULL)
+                supports->turn_of_node[nodes[k]][direction] = supports->n - 1;
+        }
 }
 
 /* Shift since time 0.  (12.15) */
@@ -75,6 +103,40 @@ static double shift_at(const struct solid_support *support, double time)
     }
 }
 
+/* Turned by all motions at a time, or turned back. */
+static struct vec3 turned(const struct solid_support *support, double time, struct vec3 r)
+{
+    for (int m = 0; m < support->n_motions; m++) {
+        const struct motion_place place = motion_place(&support->motions[m], time);
+        r = motion_turn(&place, r);
+    }
+    return r;
+}
+
+/* The angular velocity with which a step's Cayley rotation is the one from where motions were
+ * to where they are.  (13.17) */
+static struct vec3 spin_of_motion(const struct solid_support *support, double time, double dt)
+{
+    static const struct vec3 unit[3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    struct vec3 sum = {0.0, 0.0, 0.0};
+    double trace = 0.0;
+    for (int k = 0; k < 3; k++) {
+        const struct vec3 before = turned(support, time - dt, unit[k]),
+                          now = turned(support, time, unit[k]);
+        sum = vec3_add(sum, vec3_cross(before, now));
+        trace += vec3_dot(before, now);
+    }
+    return vec3_scale(2.0 / ((1.0 + trace) * dt), sum);
+}
+
+static struct vec3 spin_at(const struct solid_support *support, double time, double dt)
+{
+    if (support->kind == SOLID_SUPPORT_MOTION)
+        return spin_of_motion(support, time, dt);
+    const double rate = (shift_at(support, time) - shift_at(support, time - dt)) / dt;
+    return (struct vec3){rate, rate, rate};
+}
+
 void solid_supports_set(struct solid_supports *supports, int64_t step, double dt)
 {
     const double time = (double)step * dt;
@@ -83,6 +145,8 @@ void solid_supports_set(struct solid_supports *supports, int64_t step, double dt
         support->shift = shift_at(support, time);
         for (int m = 0; m < support->n_motions; m++)
             support->places[m] = motion_place(&support->motions[m], time);
+        if (supports->turn_of_node != NULL)
+            support->spin = spin_at(support, time, dt);
     }
 }
 
@@ -122,5 +186,16 @@ void solid_supports_book(struct solid_supports *supports, int node, const double
         exact_sum_add(&support->force[k], force[k]);
         if (support->kind != SOLID_SUPPORT_FIXED)
             exact_sum_add(&support->work, force[k] * v[k] * dt);
+    }
+}
+
+void solid_supports_spin(const struct solid_supports *supports, int node, double spin[3])
+{
+    const int *held = supports->turn_of_node[node];
+    for (int k = 0; k < 3; k++) {
+        if (held[k] < 0)
+            continue;
+        const struct vec3 *own = &supports->list[held[k]].spin;
+        spin[k] = k == 0 ? own->x : k == 1 ? own->y : own->z;
     }
 }

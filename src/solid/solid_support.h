@@ -1,5 +1,6 @@
 /*
- * What holds nodes: directions in which they do not move, or move as prescribed.
+ * What holds nodes: directions in which they do not move, or move as prescribed; axes about
+ * which those of shells do not turn, or turn as prescribed.
  *
  * A prescribed place is a function of step x dt, never a sum over steps; the velocity at the
  * half step is the one that leads there.
@@ -10,6 +11,7 @@
 #include <stdint.h>
 
 #include "base/exact_sum.h"
+#include "base/vec3.h"
 #include "solid/solid_table.h"
 
 struct job_motion;
@@ -34,13 +36,16 @@ struct solid_support {
     /* What it has done so far; shares of this rank, its user may set them back. */
     struct exact_sum force[3]; /* on nodes, summed over steps [N] */
     struct exact_sum work;     /* up to the middle of the last move [J] */
+    struct vec3 spin; /* that led there from the step before; of others than motions the same
+                         about each axis [rad/s] */
 };
 
 struct solid_supports {
     int n, capacity;
     struct solid_support *list;
     int n_nodes;
-    int (*of_node)[3]; /* support of each direction; -1: none */
+    int (*of_node)[3];      /* support of each direction; -1: none */
+    int (*turn_of_node)[3]; /* of turning about each axis; NULL: no node turns */
 };
 
 void solid_supports_init(struct solid_supports *supports, int n_nodes);
@@ -55,6 +60,14 @@ void solid_supports_add(struct solid_supports *supports, enum solid_support_kind
 void solid_supports_add_motion(struct solid_supports *supports, int n_motions,
                                const struct job_motion *motions, int n_nodes, const int *nodes);
 
+/* From now on nodes have turning to be held. */
+void solid_supports_init_turns(struct solid_supports *supports);
+/* Holds nodes' turning about an axis of space (0 to 2): tables are of angles [rad] or of
+ * angular velocities [rad/s].  Nodes that follow motions turn with them. */
+void solid_supports_add_turn(struct solid_supports *supports, enum solid_support_kind kind,
+                             int direction, const struct solid_table *table, int n_nodes,
+                             const int *nodes);
+
 /* Brings all supports to a step. */
 void solid_supports_set(struct solid_supports *supports, int64_t step, double dt);
 /* Where that puts a node, in the directions in which it is held; others are left. */
@@ -63,5 +76,8 @@ void solid_supports_place(const struct solid_supports *supports, int node,
 /* Books a step's force on a node that moves at v. */
 void solid_supports_book(struct solid_supports *supports, int node, const double force[3],
                          const double v[3], double dt);
+/* How fast a node turns on its way there, where its turning is held; others are left.
+ * (13.17) */
+void solid_supports_spin(const struct solid_supports *supports, int node, double spin[3]);
 
 #endif

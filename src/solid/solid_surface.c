@@ -36,7 +36,8 @@ static bool is_shared(const struct solid *solid, const struct solid_surface_face
     const int i = face->nodes[0];
     for (int k = solid->first[i]; k < solid->first[i + 1]; k++) {
         const int other = solid->meets[k] / SOLID_ELEMENT_CORNERS;
-        if (other != face->element && solid->alive[other] && has_side(solid, other, face))
+        if (other != face->element && solid->alive[other] &&
+            !shell_element_is(solid->shape[other]) && has_side(solid, other, face))
             return true;
     }
     return false;
@@ -46,10 +47,11 @@ void solid_surface_build(struct solid_surface *surface, const struct solid *soli
 {
     surface->n = 0;
     for (int e = 0; e < solid->n_elements; e++) {
-        for (int side = 0; solid->alive[e] && side < SOLID_SIDES; side++) {
+        const bool thin = shell_element_is(solid->shape[e]);
+        for (int side = 0; solid->alive[e] && side < (thin ? 1 : SOLID_SIDES); side++) {
             struct solid_surface_face face = {.element = e, .side = side};
             face.n = solid_side_nodes(solid, e, side, face.nodes);
-            if (face.n == 0 || is_shared(solid, &face))
+            if (face.n == 0 || (!thin && is_shared(solid, &face)))
                 continue;
             ARRAY_GROW(surface->faces, surface->n + 1, surface->capacity);
             surface->faces[surface->n++] = face;

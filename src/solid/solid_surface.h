@@ -1,4 +1,5 @@
-/* The surface of a solid: sides of living elements that no other living element shares. */
+/* The surface of a solid: sides of living elements that no other living element shares; shells
+ * and membranes once, as seen from their side 0, whatever is behind them. */
 #ifndef TREMIE_SOLID_SOLID_SURFACE_H
 #define TREMIE_SOLID_SOLID_SURFACE_H
 

@@ -1,7 +1,7 @@
 /*
- * What elements of solids cost on one core: `make bench-elements`.
+ * What elements of solids, shells and membranes cost on one core: `make bench-elements`.
  *
- * A block of hexahedra or tetrahedra shakes; timed are solid_forces(), of which almost all is
+ * A block of hexahedra or tetrahedra or a sheet shakes; timed are solid_forces(), of which almost all is
  * the element kernel, and solid_move(). Each figure is the best of several tries, as other work
  * on the machine only slows it down.
  */
@@ -9,6 +9,7 @@
 #include <stdlib.h>
 #include <time.h>
 
+#include "../unit/shell_sheet.h"
 #include "../unit/solid_block.h"
 #include "solid/solid_limits.h"
 
@@ -52,27 +53,61 @@ static void measure(struct solid *solid, double dt, struct cost *best)
     }
 }
 
+static void print(const char *name, const struct solid *solid, bool flows, enum isa isa,
+                  const struct cost *cost)
+{
+    printf("| %d %s, %s | %s | %.1f | %.1f | %.1f |\n", solid->n_elements, name,
+           flows ? "plastic" : "elastic", isa_name(isa), cost->forces, cost->move,
+           1e3 / (cost->forces + cost->move));
+    fflush(stdout);
+}
+
+/* From nodes at rest, shaken by a little. */
+static void run(const char *name, struct solid *solid, double speed, bool flows, enum isa isa)
+{
+    struct cost cost;
+    uint64_t seed = 1;
+    for (int i = 0; i < solid->n_nodes; i++)
+        for (int d = 0; d < 3; d++)
+            solid_velocity(solid, i)[d] = speed * solid_block_random(&seed);
+    measure(solid, 0.5 * solid_limits_find(solid, NULL, NULL).step, &cost);
+    print(name, solid, flows, isa, &cost);
+}
+
 static void row(int cells, bool tetrahedra, const struct solid_material *material, enum isa isa)
 {
     struct solid_block block;
     struct solid solid;
-    struct cost cost;
     uint64_t seed = 1;
     solid_block_build(&block, cells, cells, cells, (const double[3]){cells, cells, cells},
                       tetrahedra);
     solid_block_distort(&block, 0.08, &seed);
     solid_create(&solid, &block.mesh, 1, material, isa);
-    for (int i = 0; i < solid.n_nodes; i++)
-        for (int d = 0; d < 3; d++)
-            solid_velocity(&solid, i)[d] = 1.0 * solid_block_random(&seed);
-    measure(&solid, 0.5 * solid_limits_find(&solid, NULL, NULL).step, &cost);
-    printf("| %d %s, %s | %s | %.1f | %.1f | %.1f |\n", solid.n_elements,
-           tetrahedra ? "tetrahedra" : "hexahedra",
-           material->n_yield > 0 ? "plastic" : "elastic", isa_name(isa), cost.forces, cost.move,
-           1e3 / (cost.forces + cost.move));
-    fflush(stdout);
+    run(tetrahedra ? "tetrahedra" : "hexahedra", &solid, 1.0, material->n_yield > 0, isa);
     solid_destroy(&solid);
     solid_block_free(&block);
+}
+
+/* Layers of a shell; 0: a membrane. */
+static void sheet_row(int cells, bool triangles, int layers,
+                      const struct solid_material *material, enum isa isa)
+{
+    static const enum solid_element_shape shapes[2][2] = {
+        {SOLID_ELEMENT_MEMBRANE_QUAD, SOLID_ELEMENT_MEMBRANE_TRIANGLE},
+        {SOLID_ELEMENT_SHELL_QUAD, SOLID_ELEMENT_SHELL_TRIANGLE}};
+    struct shell_sheet sheet;
+    struct solid solid;
+    uint64_t seed = 1;
+    char name[64];
+    shell_sheet_build(&sheet, cells, cells, (const double[2]){cells, cells},
+                      shapes[layers > 0][triangles], 0.1, layers > 0 ? layers : 1);
+    shell_sheet_distort(&sheet, 0.08, &seed);
+    solid_create(&solid, &sheet.mesh, 1, material, isa);
+    snprintf(name, sizeof name, layers > 0 ? "shell %s, %d layers" : "membrane %s",
+             triangles ? "triangles" : "quads", layers);
+    run(name, &solid, 0.1, material->n_yield > 0, isa);
+    solid_destroy(&solid);
+    shell_sheet_free(&sheet);
 }
 
 int main(void)
@@ -88,6 +123,13 @@ int main(void)
             row(60, false, &plastic, (enum isa)isa);
             row(6, true, &elastic, (enum isa)isa);
             row(36, true, &elastic, (enum isa)isa);
+            sheet_row(32, false, 2, &elastic, (enum isa)isa);
+            sheet_row(32, false, 5, &elastic, (enum isa)isa);
+            sheet_row(32, false, 5, &plastic, (enum isa)isa);
+            sheet_row(450, false, 5, &elastic, (enum isa)isa);
+            sheet_row(22, true, 2, &elastic, (enum isa)isa);
+            sheet_row(32, false, 0, &elastic, (enum isa)isa);
+            sheet_row(22, true, 0, &elastic, (enum isa)isa);
         }
     return 0;
 }

@@ -557,7 +557,7 @@ TEST(newer_format_is_named)
     struct checkpoint checkpoint;
     char *why;
     EXPECT(!checkpoint_read_header(path, &checkpoint, &why));
-    EXPECT(why != NULL && strstr(why, "format version is 5") != NULL);
+    EXPECT(why != NULL && strstr(why, "format version is 6") != NULL);
     free(why);
     expect_refused(&comm, path);
     free(path);

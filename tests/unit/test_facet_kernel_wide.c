@@ -86,6 +86,7 @@ static void apply_as_batch(struct scene *scene, struct facet_kernel kernel)
         const double overlap = scene->motion[i].lane[3] + side * height;
         batch.overlap[k] = overlap > 0.0 ? overlap : 0.0;
         batch.yield[k] = i % 7 == 0 ? 0.01 : 0.0;
+        batch.width[k] = i % 5 == 0 ? 0.7 : 1.0;
     }
     kernel.batch(&work, &batch);
     batch.n = 0;

@@ -23,8 +23,7 @@ double cantilever_bending_stiffness(void)
     return steel.young / (3.0 * (material.lambda + 2.0 * material.mu));
 }
 
-/* The first mode of a beam and its slope. */
-static double mode(double x, double *slope)
+double cantilever_mode(double x, double *slope)
 {
     const double k = ROOT / LENGTH, y = k * x;
     const double s = (cosh(ROOT) + cos(ROOT)) / (sinh(ROOT) + sin(ROOT));
@@ -32,12 +31,11 @@ static double mode(double x, double *slope)
     return cosh(y) - cos(y) - s * (sinh(y) - sin(y));
 }
 
-/* Displacement in the shape of the mode: higher ones are orthogonal to it. */
-static double displacement(const struct solid *solid)
+double cantilever_displacement(const struct solid *solid)
 {
     double sum = 0.0, slope;
     for (int i = 0; i < solid->n_nodes; i++)
-        sum += solid->mass[i] * mode(solid->reference[i][0], &slope) *
+        sum += solid->mass[i] * cantilever_mode(solid->reference[i][0], &slope) *
                (solid_place(solid, i)[2] - solid->reference[i][2]);
     return sum;
 }
@@ -57,13 +55,13 @@ double cantilever_frequency(int across, double hourglass_stiffness)
         specimen_fix(&specimen, 0, 0.0, d);
     for (int i = 0; i < solid->n_nodes; i++) {
         double slope;
-        solid_velocity(solid, i)[2] = 0.01 * mode(solid->reference[i][0], &slope);
+        solid_velocity(solid, i)[2] = 0.01 * cantilever_mode(solid->reference[i][0], &slope);
         solid_velocity(solid, i)[0] = -0.01 * slope * (solid->reference[i][2] - 0.5 * SIDE);
     }
     double crossing[2] = {0.0}, before = 0.0;
     for (int n = 0; n < 2;) {
         specimen_steps(&specimen, BETWEEN);
-        const double now = displacement(solid);
+        const double now = cantilever_displacement(solid);
         if (before != 0.0 && (before > 0.0) != (now > 0.0))
             crossing[n++] =
                 ((double)specimen.step - BETWEEN * now / (now - before)) * specimen.dt;

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
 #include "base/report.h"
@@ -40,6 +41,25 @@ void specimen_steps(struct specimen *specimen, int64_t n)
     specimen_pushed_steps(specimen, n, NULL, NULL);
 }
 
+double specimen_settle(struct specimen *specimen, int node, int direction)
+{
+    struct solid *solid = &specimen->solid;
+    const double *v = solid_velocity(solid, node);
+    specimen_steps(specimen, 10);
+    const bool up = v[direction] > 0.0;
+    while ((v[direction] > 0.0) == up)
+        specimen_steps(specimen, 1);
+    const int64_t period = 2 * specimen->step;
+    solid->damping = 4.0 * M_PI / ((double)period * specimen->dt);
+    const double *x = solid_place(solid, node), from = solid->reference[node][direction];
+    double before;
+    do {
+        before = x[direction];
+        specimen_steps(specimen, 2 * period);
+    } while (fabs(x[direction] - before) > 1e-6 * fabs(x[direction] - from));
+    return x[direction] - from;
+}
+
 /* Forces of a step must not be computed twice: a copy of the state is. */
 struct solid_energies specimen_energies(struct specimen *specimen)
 {
@@ -47,13 +67,21 @@ struct solid_energies specimen_energies(struct specimen *specimen)
     struct solid_energies energies = {0};
     const size_t n = (size_t)solid->n_elements + 1;
     struct solid_element_state *own = solid->state;
+    struct shell_element_state *shell = solid->shell;
     solid->state = array_allocate_rows(n, sizeof *own);
-    for (size_t e = 0; e < n; e++)
-        solid->state[e] = own[e];
+    memcpy(solid->state, own, n * sizeof *own);
+    if (shell != NULL) {
+        solid->shell = array_allocate_rows(n, sizeof *shell);
+        memcpy(solid->shell, shell, n * sizeof *shell);
+    }
     solid_forces(solid, specimen->step, specimen->dt);
     solid_energies_add(solid, specimen->step, specimen->dt, &energies);
     free(solid->state);
     solid->state = own;
+    if (shell != NULL) {
+        free(solid->shell);
+        solid->shell = shell;
+    }
     return energies;
 }
 
@@ -74,6 +102,15 @@ void specimen_fix(struct specimen *specimen, int axis, double coordinate, int di
     const int n = specimen_plane(specimen, axis, coordinate, &nodes);
     solid_supports_add(&specimen->solid.supports, SOLID_SUPPORT_FIXED, direction, NULL, n,
                        nodes);
+    free(nodes);
+}
+
+void specimen_fix_turn(struct specimen *specimen, int axis, double coordinate, int direction)
+{
+    int *nodes;
+    const int n = specimen_plane(specimen, axis, coordinate, &nodes);
+    solid_supports_add_turn(&specimen->solid.supports, SOLID_SUPPORT_FIXED, direction, NULL, n,
+                            nodes);
     free(nodes);
 }
 

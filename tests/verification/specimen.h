@@ -25,6 +25,10 @@ void specimen_free(struct specimen *specimen);
 void specimen_steps(struct specimen *specimen, int64_t n);
 void specimen_pushed_steps(struct specimen *specimen, int64_t n, specimen_push *push,
                            void *what);
+/* Brings it to rest under its loads, from rest: what it does undamped until a node turns back
+ * in a direction tells a period, then mass-proportional damping that is critical for that,
+ * until two more of them change nothing.  Returns how far the node has moved [m]. */
+double specimen_settle(struct specimen *specimen, int node, int direction);
 /* Energies at the present step; what is done to bring forces to it is not done again by the
  * next of the steps above. */
 struct solid_energies specimen_energies(struct specimen *specimen);
@@ -33,6 +37,8 @@ struct solid_energies specimen_energies(struct specimen *specimen);
 int specimen_plane(const struct specimen *specimen, int axis, double coordinate, int **nodes);
 /* Holds all of them in a direction. */
 void specimen_fix(struct specimen *specimen, int axis, double coordinate, int direction);
+/* Holds their turning about an axis. */
+void specimen_fix_turn(struct specimen *specimen, int axis, double coordinate, int direction);
 
 /* The largest |stress component| of all elements [Pa]. */
 double specimen_stress_most(const struct specimen *specimen);
