@@ -85,7 +85,7 @@ def expect_checksums(test, file, name):
 
 def check_counts(file, n_spheres, dt):
     test, run = Test("checkpoint: counts, units, time"), file["run"].attrs
-    test.expect(text(run["format"]) == "tremie checkpoint" and run["format_version"] == 4, "format")
+    test.expect(text(run["format"]) == "tremie checkpoint" and run["format_version"] == 5, "format")
     test.expect(run["n_spheres"] == n_spheres, f"{run['n_spheres']} spheres")
     test.expect(run["dt"] == dt and text(run["dt_unit"]) == "s", f"dt is {run['dt']}")
     test.expect(run["time"] == run["step"] * dt and text(run["time_unit"]) == "s", f"time is {run['time']}")
