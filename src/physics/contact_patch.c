@@ -46,9 +46,10 @@ static double inside(const struct mesh_border *border, struct vec3 point)
     return vec3_dot(vec3_sub(point, border->from), border->inward);
 }
 
-/* What lies between the foot and a side of the face.  Places on the side are counted from the
- * one that is nearest to the foot, so that sides much longer than the circle do no harm. */
-static void add_side(struct circle *circle, const struct mesh_border *border, struct vec3 foot)
+/* What lies between the foot and a side of the face; false where the side is outside of the
+ * circle.  Places on the side are counted from the one that is nearest to the foot, so that
+ * sides much longer than the circle do no harm. */
+static bool add_side(struct circle *circle, const struct mesh_border *border, struct vec3 foot)
 {
     const double length = sqrt(border->length_squared), scale = 1.0 / length;
     const struct vec3 inward = vec3_scale(scale, border->inward);
@@ -63,7 +64,7 @@ static void add_side(struct circle *circle, const struct mesh_border *border, st
                       stop = vec3_axpy(nearest, to, along);
     if (!(first < last)) {
         add_sector(circle, start, stop);
-        return;
+        return false;
     }
     const struct vec3 begin = vec3_axpy(nearest, first, along),
                       end = vec3_axpy(nearest, last, along);
@@ -72,6 +73,7 @@ static void add_side(struct circle *circle, const struct mesh_border *border, st
     add_triangle(circle, begin, end);
     if (last < to)
         add_sector(circle, end, stop);
+    return true;
 }
 
 /* A ball's volume behind the plane, in a unit of angle around the foot [m3]. */
@@ -134,8 +136,13 @@ bool contact_patch_cut(const struct mesh *mesh, int face, struct vec3 centre, do
     if (is_whole) {
         circle.angle = 2.0 * PI;
     } else {
+        /* A circle that goes past a corner meets no side.  Angles about its middle then add up to
+         * nothing, but for rounding. */
+        bool meets = false;
         for (int k = 0; k < 3; k++)
-            add_side(&circle, &border[k], foot);
+            meets = add_side(&circle, &border[k], foot) || meets;
+        if (!meets)
+            return false;
     }
     if (!finish(&circle, foot, patch))
         return false;
