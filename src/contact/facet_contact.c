@@ -575,7 +575,7 @@ static void add_part(const struct step *step, int begin, const struct facet_patc
     const struct facet_patch *patch = &work->patch;
     const struct facet_contact *contact = &step->facets->list[begin + part->entry];
     const double radius = sphere_radius(step->spheres, contact->sphere);
-    const double facing = vec3_norm(part->facing), inverse = 1.0 / facing;
+    const double facing = vec3_norm(part->facing), inverse = facing > 0.0 ? 1.0 / facing : 0.0;
     const struct vec3 centre = sphere_place(step->spheres, contact->sphere);
     struct contact_geometry at = {.normal = vec3_scale(inverse, part->facing)};
     at.point = vec3_axpy(centre, patch->depth - radius, at.normal); /* pressure has no moment */

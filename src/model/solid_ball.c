@@ -11,6 +11,9 @@
 /* A ball's radius over the depth of the inner node, or over the way to the nearest one if that
  * is less: deep enough for what a node may be pressed in, and within its elements. */
 static const double PART = 1.0 / 3.0;
+/* Over the way to the nearest node: a node less deep than the first is not deep enough, what is
+ * less deep than the second leaves no room. */
+static const double SHALLOW = 0.2, NO_ROOM = 0.01;
 
 /* Elements at each node: list[begin[i] .. begin[i + 1] - 1]. */
 struct around {
@@ -48,34 +51,71 @@ static double depth_below(const struct mesh *skin, int vertex, struct vec3 point
     return least;
 }
 
-/* Between the outer node and the node of an element there that lies deepest below the faces; of
- * such the nearest, then the first. */
-static void place_ball(const struct solid_mesh *mesh, const struct mesh *skin,
-                       const struct around *around, int vertex, struct solid_ball *ball)
+/* What has been found that lies deepest below the faces around a vertex. */
+struct deepest {
+    double depth, way2; /* below them [m]; squared way from the vertex [m2] */
+    int n, nodes[SOLID_BALL_INNER];
+};
+
+/* The node of the elements there that is deepest; of such the nearest, then the first.  Returns
+ * the way to the nearest of all [m]. */
+static double find_node(const struct solid_mesh *mesh, const struct mesh *skin,
+                        const struct around *around, int vertex, int outer,
+                        struct deepest *found)
 {
-    double deepest = 0.0, nearest2 = 0.0, shortest2 = (double)INFINITY;
-    ball->inner = -1;
-    for (int m = around->begin[ball->outer]; m < around->begin[ball->outer + 1]; m++) {
+    double shortest2 = (double)INFINITY;
+    for (int m = around->begin[outer]; m < around->begin[outer + 1]; m++) {
         const int *corners = mesh->elements[around->list[m]];
         for (int k = 0; k < solid_mesh_n_corners(corners); k++) {
             const double depth = depth_below(skin, vertex, mesh->nodes[corners[k]]);
-            const struct vec3 way = vec3_sub(mesh->nodes[corners[k]], mesh->nodes[ball->outer]);
-            const double way2 = vec3_dot(way, way), hair = 1e-9 * deepest;
-            shortest2 = corners[k] != ball->outer && way2 < shortest2 ? way2 : shortest2;
-            const bool is_better =
-                depth > deepest + hair ||
-                (ball->inner >= 0 && depth > deepest - hair &&
-                 (way2 < nearest2 || (way2 == nearest2 && corners[k] < ball->inner)));
-            if (!is_better)
+            const struct vec3 way = vec3_sub(mesh->nodes[corners[k]], mesh->nodes[outer]);
+            const double way2 = vec3_dot(way, way), hair = 1e-9 * found->depth;
+            if (corners[k] == outer)
                 continue;
-            ball->inner = corners[k];
-            deepest = depth;
-            nearest2 = way2;
+            shortest2 = way2 < shortest2 ? way2 : shortest2;
+            if (depth > found->depth + hair ||
+                (found->n > 0 && depth > found->depth - hair &&
+                 (way2 < found->way2 ||
+                  (way2 == found->way2 && corners[k] < found->nodes[0]))))
+                *found = (struct deepest){depth, way2, 1, {corners[k]}};
         }
     }
-    const double shortest = sqrt(shortest2);
-    ball->radius = PART * (deepest < shortest ? deepest : shortest);
-    ball->part = ball->inner >= 0 ? ball->radius / deepest : 0.0;
+    return sqrt(shortest2);
+}
+
+/* The middle of such an element, if that is deeper. */
+static void find_middle(const struct solid_mesh *mesh, const struct mesh *skin,
+                        const struct around *around, int vertex, int outer,
+                        struct deepest *found)
+{
+    for (int m = around->begin[outer]; m < around->begin[outer + 1]; m++) {
+        const int *corners = mesh->elements[around->list[m]];
+        struct deepest middle = {.n = solid_mesh_n_corners(corners)};
+        struct vec3 sum = {0.0, 0.0, 0.0};
+        for (int k = 0; k < middle.n; k++) {
+            middle.nodes[k] = corners[k];
+            sum = vec3_add(sum, mesh->nodes[corners[k]]);
+        }
+        middle.depth = depth_below(skin, vertex, vec3_scale(1.0 / middle.n, sum));
+        if (middle.depth > found->depth)
+            *found = middle;
+    }
+}
+
+static void place_ball(const struct solid_mesh *mesh, const struct mesh *skin,
+                       const struct around *around, int vertex, struct solid_ball *ball)
+{
+    struct deepest found = {.depth = 0.0};
+    const double shortest = find_node(mesh, skin, around, vertex, ball->outer, &found);
+    if (!(found.depth > SHALLOW * shortest))
+        find_middle(mesh, skin, around, vertex, ball->outer, &found);
+    if (!(found.depth > NO_ROOM * shortest))
+        return;
+    ball->n_inner = found.n;
+    for (int k = 0; k < found.n; k++)
+        ball->inner[k] = found.nodes[k];
+    ball->radius = PART * (found.depth < shortest ? found.depth : shortest);
+    ball->part = ball->radius / found.depth;
 }
 
 /* A third of a face belongs to each of its vertices; a mean point passes its own on. */

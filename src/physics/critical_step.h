@@ -33,6 +33,13 @@ struct critical_step_contact {
     double damping[3]; /* likewise, times 4, 2, 2: dashpots use velocities of the past [kg/s] */
 };
 
+/* The largest of what a contact's springs or dashpots have, across and along. */
+static inline double critical_step_stiffest(const double parts[3])
+{
+    const double most = parts[0] > parts[1] ? parts[0] : parts[1];
+    return most > parts[2] ? most : parts[2];
+}
+
 /* The contact of radius a [m] between spheres of effective mass m* [kg].  (6.3) */
 struct critical_step_contact critical_step_contact(const struct material_pair *pair,
                                                    double contact_radius, double mass);

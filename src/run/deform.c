@@ -120,13 +120,21 @@ static void add_balls(struct deform *deform, struct deform_body *own,
                       const struct solid_mesh *mesh, struct body *body)
 {
     const int n = body->mesh.n_corners;
-    int *nodes = array_allocate((size_t)n, sizeof *nodes);
+    int *nodes = array_allocate(SOLID_BALL_INNER * (size_t)n, sizeof *nodes), n_none = 0;
     own->balls = solid_balls(mesh, &body->mesh, own->skin.nodes);
-    own->inner = array_allocate((size_t)n, sizeof *own->inner);
+    own->inner = array_allocate(SOLID_BALL_INNER * (size_t)n, sizeof *own->inner);
     own->n_balls = n;
-    for (int k = 0; k < n; k++)
-        nodes[k] = own->balls[k].inner;
-    deform_skin_add(&own->skin, body, mesh->n_nodes, n, nodes, own->inner);
+    for (int k = 0; k < n; k++) {
+        for (int m = 0; m < SOLID_BALL_INNER; m++)
+            nodes[SOLID_BALL_INNER * k + m] =
+                m < own->balls[k].n_inner ? own->balls[k].inner[m] : -1;
+        n_none += own->balls[k].n_inner == 0;
+    }
+    deform_skin_add(&own->skin, body, mesh->n_nodes, SOLID_BALL_INNER * n, nodes, own->inner);
+    if (n_none > 0)
+        report_warn("body '%s': %d nodes of its surface lie on nothing that is deeper in; they "
+                    "touch no bodies",
+                    body->name, n_none);
     deform->n_balls += n;
     free(nodes);
 }
@@ -290,6 +298,10 @@ struct deform_sizes deform_sizes(const struct deform *deform)
     return sizes;
 }
 
+/* What hourglass modes may hold of a body's energy, motion and all, whatever else it holds: a
+ * first touch loads single nodes. */
+static const double LITTLE = 0.01;
+
 /* Has a body too much energy in hourglass modes?  The rank with the worst element names it. */
 static bool is_hourglass(struct simulation *sim, const struct deform_body *deform,
                          const struct solid_energies *energies)
@@ -300,7 +312,8 @@ static bool is_hourglass(struct simulation *sim, const struct deform_body *defor
                             solid_energy_value(energies, SOLID_ENERGY_PLASTIC) +
                             solid_energy_value(energies, SOLID_ENERGY_DAMPED);
     const double share = sim->job->watch.hourglass;
-    if (!(share > 0.0) || hourglass <= share * internal)
+    const double all = internal + solid_energy_value(energies, SOLID_ENERGY_KINETIC);
+    if (!(share > 0.0) || hourglass <= share * internal || hourglass <= LITTLE * all)
         return false;
     const struct solid_limits_fault fault =
         solid_limits_hourglass(&deform->solid, hourglass, internal, share);

@@ -27,7 +27,7 @@ struct deform_body {
     /* Where its nodes touch bodies (run/touch.h), one a corner of the mesh, else none: */
     int n_balls, first_ball; /* counted likewise */
     struct solid_ball *balls;
-    int *inner; /* of each ball the inner node among the skin's points; -1: there is no ball */
+    int *inner; /* SOLID_BALL_INNER of each: its inner nodes among the skin's points */
 };
 
 struct deform {

@@ -331,8 +331,9 @@ static void request_copies(struct simulation *sim, int b)
     for (int t = 0; t < share->n_touched; t++)
         mark_face(deform, mesh, share->touched[t]);
     for (int k = 0; k < deform->n_balls; k++)
-        if (deform->balls[k].inner >= 0 && solid->moves[deform->balls[k].outer])
-            share->copy[deform->balls[k].inner] |= TOUCHED;
+        for (int m = 0; solid->moves[deform->balls[k].outer] && m < deform->balls[k].n_inner;
+             m++)
+            share->copy[deform->balls[k].inner[m]] |= TOUCHED;
     for (int i = 0; i < solid->n_nodes; i++) {
         struct deform_share_peer *peer = &share->peers[share->owner[i]];
         if (share->copy[i] == 0 || solid->moves[i])

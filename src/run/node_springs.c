@@ -75,12 +75,6 @@ static struct share share_of(const struct mesh *mesh, int face, struct vec3 poin
     return share;
 }
 
-static double most_of(const double parts[3])
-{
-    const double most = parts[0] > parts[1] ? parts[0] : parts[1];
-    return most > parts[2] ? most : parts[2];
-}
-
 /* The contacts of spheres or balls with the body, and, of balls, those of the body's own. */
 static void add_contacts(struct entries *entries, const struct simulation *sim, int b,
                          const struct facet_contacts *contacts, const struct spheres *spheres,
@@ -107,14 +101,22 @@ static void add_contacts(struct entries *entries, const struct simulation *sim, 
         const int wall = sim->bodies.list[contact->body].material;
         const struct critical_step_contact felt = critical_step_contact(
             &materials->pairs[spheres->material[i] * materials->n + wall], width, 1.0 / yield);
-        const double stiffness = most_of(felt.stiffness), damping = most_of(felt.damping);
+        const double stiffness = critical_step_stiffest(felt.stiffness),
+                     damping = critical_step_stiffest(felt.damping);
         for (int m = 0; m < share.n; m++)
             add(entries, deform->skin.nodes[share.corners[m]], share.parts[m], stiffness,
                 damping);
         if (is_own) {
             const struct solid_ball *at = &deform->balls[ball];
+            if (sim->bodies.list[contact->body].rigid != NULL && sim->watch.loads != NULL) {
+                /* The body yields as well, to all of its contacts together. (10.8) */
+                const struct critical_step_sums *load = &sim->watch.loads[contact->body];
+                const double mass = deform->solid.mass[at->outer];
+                add(entries, at->outer, mass, load->stiffness, load->damping);
+            }
             add(entries, at->outer, 1.0 - at->part, stiffness, damping);
-            add(entries, at->inner, at->part, stiffness, damping);
+            for (int m = 0; m < at->n_inner; m++)
+                add(entries, at->inner[m], at->part / at->n_inner, stiffness, damping);
         }
     }
 }

@@ -333,7 +333,7 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
     }
     counts[0] = sim->spheres.n_owned;
     counts[1] = add_pair_energy(sim, &sums[ENERGY_ELASTIC], &sums[ENERGY_SPRINGS]);
-    counts[2] = facet_contacts_count(&sim->facets);
+    counts[2] = facet_contacts_count(&sim->facets) + touch_count(&sim->touch);
     facet_contacts_elastic_energy(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials,
                                   &sums[ENERGY_ELASTIC], &sums[ENERGY_SPRINGS]);
     /* A force works in half of the interval before the step and half of the one after: at the

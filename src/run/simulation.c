@@ -301,6 +301,13 @@ static int restore_monitors(struct simulation *sim, const struct checkpoint *che
     return status;
 }
 
+/* Features of a body that spheres touch. */
+static int n_touched(const struct simulation *sim, int b)
+{
+    const struct body *body = &sim->bodies.list[b];
+    return body->skin != NULL ? body->mesh.n_faces : mesh_n_features(&body->mesh);
+}
+
 /* A file may name materials and features that the job does not have. */
 static bool fits_job(const struct simulation *sim, const struct checkpoint *checkpoint)
 {
@@ -316,8 +323,7 @@ static bool fits_job(const struct simulation *sim, const struct checkpoint *chec
         const struct facet_contact_record *record = &checkpoint->facet_contacts[r];
         fits = fits && record->body >= 0 && record->body < sim->bodies.n;
         if (fits)
-            fits = record->feature >= 0 &&
-                   record->feature < mesh_n_features(&sim->bodies.list[record->body].mesh);
+            fits = record->feature >= 0 && record->feature < n_touched(sim, record->body);
     }
     return fits;
 }

@@ -9,7 +9,9 @@
 #include "base/report.h"
 #include "job/job.h"
 #include "model/restitution.h"
+#include "model/rigid.h"
 #include "model/solid_ball.h"
+#include "physics/critical_step.h"
 #include "run/simulation.h"
 #include "store/checkpoint.h"
 #include "store/table.h"
@@ -82,12 +84,33 @@ static bool was_apart(const struct mesh *mesh, int face, struct vec3 centre, dou
     return vec3_norm(vec3_sub(centre, middle)) > sqrt(reach2) + APART * radius;
 }
 
-static struct vec3 reference_of(const struct deform_body *deform, const struct solid_ball *ball)
+/* Means over a ball's nodes of what `of` gives. */
+static struct vec3 mean_of(const struct solid *solid, const struct solid_ball *ball,
+                           const double *(*of)(const struct solid *, int))
 {
-    const double *p = deform->solid.reference[ball->outer],
-                 *q = deform->solid.reference[ball->inner];
-    return (struct vec3){p[0] + ball->part * (q[0] - p[0]), p[1] + ball->part * (q[1] - p[1]),
-                         p[2] + ball->part * (q[2] - p[2])};
+    const double *p = of(solid, ball->outer);
+    double q[3] = {0.0, 0.0, 0.0};
+    for (int k = 0; k < ball->n_inner; k++)
+        for (int x = 0; x < 3; x++)
+            q[x] += of(solid, ball->inner[k])[x];
+    for (int x = 0; x < 3; x++)
+        q[x] = p[x] + ball->part * (q[x] / ball->n_inner - p[x]);
+    return (struct vec3){q[0], q[1], q[2]};
+}
+
+static const double *place(const struct solid *solid, int i)
+{
+    return solid_place(solid, i);
+}
+
+static const double *velocity(const struct solid *solid, int i)
+{
+    return solid_velocity(solid, i);
+}
+
+static const double *reference(const struct solid *solid, int i)
+{
+    return solid->reference[i];
 }
 
 /* May a ball touch this feature? */
@@ -100,8 +123,8 @@ static bool meets(const void *from, int sphere, int body, int feature)
     if (body != deform->body)
         return true;
     return sim->job->bodies[body].solid.touches.what == JOB_TOUCHES_ITSELF &&
-           was_apart(&sim->bodies.list[body].mesh, feature, reference_of(deform, ball),
-                     ball->radius);
+           was_apart(&sim->bodies.list[body].mesh, feature,
+                     mean_of(&deform->solid, ball, reference), ball->radius);
 }
 
 static double mean_radius(const struct deform *deform)
@@ -111,9 +134,9 @@ static double mean_radius(const struct deform *deform)
     for (int b = 0; b < deform->n; b++)
         for (int k = 0; k < deform->list[b].n_balls; k++) {
             sum += deform->list[b].balls[k].radius;
-            n += deform->list[b].balls[k].inner >= 0;
+            n += deform->list[b].balls[k].n_inner > 0;
         }
-    return sum / n;
+    return n > 0 ? sum / n : (double)INFINITY;
 }
 
 void touch_init(struct touch *touch, const struct simulation *sim, enum isa isa)
@@ -157,14 +180,10 @@ void touch_clear(struct touch *touch)
 static void put_ball(struct spheres *spheres, int i, const struct solid *solid,
                      const struct solid_ball *ball)
 {
-    const double *p = solid_place(solid, ball->outer), *q = solid_place(solid, ball->inner);
-    const double *v = solid_velocity(solid, ball->outer),
-                 *w = solid_velocity(solid, ball->inner);
-    double *motion = spheres->motion[i].lane;
-    for (int x = 0; x < 3; x++) {
-        motion[x] = p[x] + ball->part * (q[x] - p[x]);
-        motion[4 + x] = v[x] + ball->part * (w[x] - v[x]);
-    }
+    const struct vec3 x = mean_of(solid, ball, place), v = mean_of(solid, ball, velocity);
+    const double values[2][3] = {{x.x, x.y, x.z}, {v.x, v.y, v.z}};
+    memcpy(spheres->motion[i].lane, values[0], sizeof values[0]);
+    memcpy(spheres->motion[i].lane + 4, values[1], sizeof values[1]);
     spheres->force[i] = (struct sphere_row){{0.0}};
 }
 
@@ -182,16 +201,17 @@ void touch_find_extents(struct simulation *sim)
         const struct solid *solid = &deform->solid;
         for (int v = 0; v < deform->n_balls; v++) {
             const struct solid_ball *ball = &deform->balls[v];
-            if (ball->inner < 0 || !solid->moves[ball->outer])
+            if (ball->n_inner == 0 || !solid->moves[ball->outer])
                 continue;
-            const double *p = solid_place(solid, ball->outer),
-                         *q = solid_place(solid, ball->inner);
+            const struct vec3 centre = mean_of(solid, ball, place);
+            const double at[3] = {centre.x, centre.y, centre.z};
             const double reach = ball->radius + sim->body_allowance[deform->body];
-            double *extent = most + 6 * boxes_owner(&sim->boxes, p);
+            double *extent =
+                most + 6 * boxes_owner(&sim->boxes, solid_place(solid, ball->outer));
             for (int x = 0; x < 3; x++) {
-                const double at = p[x] + ball->part * (q[x] - p[x]);
-                extent[x] = reach - at > extent[x] ? reach - at : extent[x];
-                extent[3 + x] = at + reach > extent[3 + x] ? at + reach : extent[3 + x];
+                const double below = reach - at[x], above = at[x] + reach;
+                extent[x] = below > extent[x] ? below : extent[x];
+                extent[3 + x] = above > extent[3 + x] ? above : extent[3 + x];
             }
         }
     }
@@ -252,11 +272,12 @@ static void list_balls(struct simulation *sim)
         const struct deform_body *deform = &sim->deform.list[where.deform];
         const struct solid_ball *at = &deform->balls[where.vertex];
         touch->place[ball] = -1;
-        if (at->inner < 0 || !deform->solid.moves[at->outer])
+        if (at->n_inner == 0 || !deform->solid.moves[at->outer])
             continue;
-        const double near = 1.0 - at->part, *mass = deform->solid.mass;
-        const double inverse_mass =
-            near * near / mass[at->outer] + at->part * at->part / mass[at->inner];
+        const double near = 1.0 - at->part, far = at->part / at->n_inner;
+        double inverse_mass = near * near / deform->solid.mass[at->outer];
+        for (int k = 0; k < at->n_inner; k++)
+            inverse_mass += far * far / deform->solid.mass[at->inner[k]];
         spheres_reserve(spheres, n + 1);
         touch->owned[n] = ball;
         touch->place[ball] = n;
@@ -353,14 +374,16 @@ static void push_ball(struct simulation *sim, int i)
     struct body_load *load = &sim->facets.loads[deform->body];
     const double *f = sim->touch.spheres.force[i].lane;
     const double *c = sim->touch.spheres.motion[i].lane;
+    const int *inner = deform->inner + SOLID_BALL_INNER * where.vertex;
+    const double share = ball->part / ball->n_inner;
     if (f[0] == 0.0 && f[1] == 0.0 && f[2] == 0.0)
         return;
     for (int x = 0; x < 3; x++) {
         const int y = (x + 1) % 3, z = (x + 2) % 3;
         struct exact_sum *outer = &skin->force[where.vertex][x];
         exact_sum_add(outer, f[x]);
-        exact_sum_add(outer, -exact_sum_add(&skin->force[deform->inner[where.vertex]][x],
-                                            ball->part * f[x]));
+        for (int m = 0; m < ball->n_inner; m++)
+            exact_sum_add(outer, -exact_sum_add(&skin->force[inner[m]][x], share * f[x]));
         exact_sum_add(&load->force[x], f[x]);
         exact_sum_add(&load->torque[x], c[y] * f[z] - c[z] * f[y]);
     }
@@ -406,12 +429,38 @@ void touch_apply(struct simulation *sim)
     watch_depth(sim);
 }
 
+int touch_count(const struct touch *touch)
+{
+    return is_on(touch) ? facet_contacts_count(&touch->contacts) : 0;
+}
+
 void touch_end(struct simulation *sim)
 {
     for (int i = 0; sim->job->energy_ledger && i < sim->touch.spheres.n_owned; i++) {
         const double *force = sim->touch.spheres.force[i].lane;
         exact_sum_add(&sim->observe.totals[OBSERVE_TOUCH_FRICTION], force[3]);
         exact_sum_add(&sim->observe.totals[OBSERVE_TOUCH_DAMPING], force[7]);
+    }
+}
+
+void touch_load_bodies(const struct touch *touch, const struct bodies *bodies,
+                       struct exact_sum *sums)
+{
+    for (int k = 0; is_on(touch) && k < touch->contacts.n; k++) {
+        const struct facet_contact *contact = &touch->contacts.list[k];
+        const struct body *body = &bodies->list[contact->body];
+        const double width = contact->history[CONTACT_RADIUS_LANE];
+        const int i = contact->sphere;
+        if (!(width > 0.0) || body->rigid == NULL)
+            continue;
+        const double yield = rigid_yield_most(body->rigid, sphere_place(&touch->spheres, i));
+        const struct critical_step_contact felt = critical_step_contact(
+            &touch->materials
+                 .pairs[touch->spheres.material[i] * touch->materials.n + body->material],
+            width, 1.0 / (sphere_inverse_mass(&touch->spheres, i) + yield));
+        exact_sum_add(&sums[2 * contact->body], critical_step_stiffest(felt.stiffness) * yield);
+        exact_sum_add(&sums[2 * contact->body + 1],
+                      critical_step_stiffest(felt.damping) * yield);
     }
 }
 
@@ -461,10 +510,13 @@ bool touch_fits(const struct simulation *sim, const struct checkpoint_more *tabl
     const struct facet_contact_record *records = (const void *)table->records;
     bool fits = true;
     for (int64_t r = 0; is_on(&sim->touch) && fits && r < table->n_rows; r++) {
-        fits = records[r].body < sim->bodies.n;
-        if (fits)
-            fits =
-                records[r].feature < mesh_n_features(&sim->bodies.list[records[r].body].mesh);
+        fits =
+            records[r].body >= 0 && records[r].body < sim->bodies.n && records[r].feature >= 0;
+        if (!fits)
+            break;
+        const struct body *body = &sim->bodies.list[records[r].body];
+        fits = records[r].feature <
+               (body->skin != NULL ? body->mesh.n_faces : mesh_n_features(&body->mesh));
     }
     return fits;
 }

@@ -61,8 +61,15 @@ void touch_search(struct simulation *sim, bool all_pairs);
 void touch_begin(struct simulation *sim);
 /* Adds what balls do to all bodies.  Local. */
 void touch_apply(struct simulation *sim);
+/* How many contacts touch.  Local. */
+int touch_count(const struct touch *touch);
 /* Books what contacts have lost in the step.  Local. */
 void touch_end(struct simulation *sim);
+
+/* Adds what present contacts do to bodies that forces move: stiffness [1/s2] and damping [1/s]
+ * over how such a body yields, two sums a body.  Local. */
+void touch_load_bodies(const struct touch *touch, const struct bodies *bodies,
+                       struct exact_sum *sums);
 
 /* What springs hold, as facet_contacts_elastic_energy(); and what the step loses, half of it
  * by now where it is by dashpots. Local. */

@@ -64,21 +64,15 @@ static struct split split_pair(const struct simulation *sim, int k)
         {critical_step_side(w_i, u_i, u_j), critical_step_side(w_j, u_j, u_i)}};
 }
 
-/* The largest of what a contact's springs and dashpots have, across and along. */
-static double stiffest(const double parts[3])
-{
-    const double most = parts[0] > parts[1] ? parts[0] : parts[1];
-    return most > parts[2] ? most : parts[2];
-}
-
 /* A contact with a body that yields: 1/m of the sphere, and so much more that the body's own
  * load by all of its contacts, divided evenly over time, is in it. (10.8) */
 static double yielding_share(const struct critical_step_contact *contact, double share,
                              const struct critical_step_sums *load)
 {
-    const double k = load->stiffness / stiffest(contact->stiffness);
-    const double d =
-        stiffest(contact->damping) > 0.0 ? load->damping / stiffest(contact->damping) : 0.0;
+    const double k = load->stiffness / critical_step_stiffest(contact->stiffness);
+    const double d = critical_step_stiffest(contact->damping) > 0.0
+                         ? load->damping / critical_step_stiffest(contact->damping)
+                         : 0.0;
     return share + (k > d ? k : d);
 }
 
@@ -124,9 +118,11 @@ static void load_bodies(const struct simulation *sim)
         const struct vec3 x = sphere_place(&sim->spheres, contact->sphere);
         const double yield = rigid_yield_most(body->rigid, x);
         const struct critical_step_contact felt = split_facet(sim, contact).contact;
-        exact_sum_add(&sums[2 * contact->body], stiffest(felt.stiffness) * yield);
-        exact_sum_add(&sums[2 * contact->body + 1], stiffest(felt.damping) * yield);
+        exact_sum_add(&sums[2 * contact->body], critical_step_stiffest(felt.stiffness) * yield);
+        exact_sum_add(&sums[2 * contact->body + 1],
+                      critical_step_stiffest(felt.damping) * yield);
     }
+    touch_load_bodies(&sim->touch, &sim->bodies, sums);
     exact_sum_reduce(sim->comm, sums, 2 * n);
     for (int b = 0; b < n; b++) {
         sim->watch.loads[b].stiffness = exact_sum_value(&sums[2 * b]);
@@ -309,8 +305,8 @@ void watch_contacts(struct watch *watch, const struct simulation *sim)
 {
     if (sim->step % WATCH_CONTACTS_EVERY != 0)
         return;
-    watch_elements(watch, sim);
     load_bodies(sim);
+    watch_elements(watch, sim);
     watch->rate = 1.0 / find_critical(sim, sim->dt / sim->job->watch.step);
     watch->rounding = find_rounding(sim);
 }
