@@ -183,13 +183,12 @@ static void check_probe(const struct survey *survey, int k)
         FIND(survey, probe->place, "%s: set '%s' has none; some are expected", path, name);
 }
 
-static void check_body(const struct job *job, int b, struct mistakes *mistakes)
+static void check_body(struct job *job, int b, struct mistakes *mistakes)
 {
-    const struct job_body *body = &job->bodies[b];
+    struct job_body *body = &job->bodies[b];
     const struct job_solid *solid = &body->solid;
     const bool file = solid->kind == JOB_MESH_GMSH;
     const struct job_place nowhere = {0, 0};
-    struct solid_mesh mesh;
     if (file ? !group_is_there(body, mistakes)
              : solid_shape_n_elements(body) > (double)GMSH_ELEMENTS_MOST) {
         if (!file)
@@ -198,14 +197,14 @@ static void check_body(const struct job *job, int b, struct mistakes *mistakes)
                          solid_shape_n_elements(body), GMSH_ELEMENTS_MOST);
         return;
     }
-    solid_mesh_build(&mesh, body);
-    const struct survey survey = {job, body, &mesh, b, mistakes};
-    solid_quality_check(&mesh, body->name, file ? body->file : job->path,
+    const struct solid_mesh *mesh = solid_mesh_keep(body);
+    const struct survey survey = {job, body, mesh, b, mistakes};
+    solid_quality_check(mesh, body->name, file ? body->file : job->path,
                         file ? nowhere : body->place, mistakes);
     check_sets(&survey);
     for (int k = 0; k < solid->n_boundary; k++) {
         const struct job_boundary *asked = &solid->boundary[k];
-        const struct solid_mesh_set *set = solid_mesh_find(&mesh, asked->set);
+        const struct solid_mesh_set *set = solid_mesh_find(mesh, asked->set);
         char path[PATH];
         snprintf(path, sizeof path, "bodies.%d.boundary.%d.set", b, k);
         if (set == NULL)
@@ -216,10 +215,9 @@ static void check_body(const struct job *job, int b, struct mistakes *mistakes)
     for (int k = 0; k < job->output.n_probes; k++)
         check_probe(&survey, k);
     check_conflicts(&survey);
-    solid_mesh_clear(&mesh);
 }
 
-void solid_survey_check(const struct job *job, struct mistakes *mistakes)
+void solid_survey_check(struct job *job, struct mistakes *mistakes)
 {
     for (int b = 0; b < job->n_bodies; b++)
         if (job->bodies[b].model == JOB_MODEL_SOLID)
@@ -250,12 +248,12 @@ double solid_survey_step(const struct job *job)
     double least = (double)INFINITY;
     for (int b = 0; b < job->n_bodies; b++) {
         const struct job_body *body = &job->bodies[b];
-        struct solid_mesh mesh;
+        struct solid_mesh own;
         if (body->model != JOB_MODEL_SOLID)
             continue;
-        solid_mesh_build(&mesh, body);
-        const double step = step_of(job, body, solid_quality_of(&mesh).width);
-        solid_mesh_clear(&mesh);
+        const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
+        const double step = step_of(job, body, solid_quality_of(mesh).width);
+        solid_mesh_clear(&own);
         least = step < least ? step : least;
     }
     return least;
@@ -295,30 +293,30 @@ void solid_survey_print(const struct job *job, int b)
 {
     const struct job_body *body = &job->bodies[b];
     const struct job_material *material = &job->materials[body->material];
-    struct solid_mesh mesh;
+    struct solid_mesh own;
     char aspect[TEXT], jacobian[TEXT], width[TEXT];
-    solid_mesh_build(&mesh, body);
-    const struct solid_quality q = solid_quality_of(&mesh);
+    const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
+    const struct solid_quality q = solid_quality_of(mesh);
     const double step = step_of(job, body, q.width);
     report_say("body      %s: solid, %s, %d hexahedra, %d tetrahedra, %d nodes, mass %.6g kg",
-               body->name, material->name, q.n_hexahedra, q.n_tetrahedra, mesh.n_nodes,
+               body->name, material->name, q.n_hexahedra, q.n_tetrahedra, mesh->n_nodes,
                q.volume * material->density);
     report_say("          x %.4g .. %.4g, y %.4g .. %.4g, z %.4g .. %.4g m", q.low.x, q.high.x,
                q.low.y, q.high.y, q.low.z, q.high.z);
     report_say("          volume %.6g m3, surface %.4g m2 in %d sides", q.volume, q.area,
                q.n_sides);
     report_say("          longest over shortest edge up to %.3g, of %s", q.aspect,
-               element_name(&mesh, q.aspect_worst, aspect));
+               element_name(mesh, q.aspect_worst, aspect));
     report_say("          scaled Jacobian %.3g in the mean, least %.3g, of %s", q.jacobian_mean,
-               q.jacobian_least, element_name(&mesh, q.jacobian_worst, jacobian));
+               q.jacobian_least, element_name(mesh, q.jacobian_worst, jacobian));
     report_say(
         "          waves run at %.4g m/s, through %.4g m of %s: critical step about %.3g "
         "s without contacts, the step is %.3g of it",
-        wave_speed(material), q.width, element_name(&mesh, q.width_worst, width), step,
+        wave_speed(material), q.width, element_name(mesh, q.width_worst, width), step,
         job->time.step / step);
-    print_sets(&mesh);
-    print_cost(job, &q, mesh.n_nodes);
-    solid_mesh_clear(&mesh);
+    print_sets(mesh);
+    print_cost(job, &q, mesh->n_nodes);
+    solid_mesh_clear(&own);
 }
 
 /* Limits beyond which no usual material lies: probably other units. */
@@ -375,10 +373,10 @@ void solid_survey_warn(const struct job *job, int b)
 {
     static const double JACOBIAN = 0.1, ASPECT = 20.0;
     const struct job_body *body = &job->bodies[b];
-    struct solid_mesh mesh;
+    struct solid_mesh own;
     char name[TEXT];
-    solid_mesh_build(&mesh, body);
-    const struct solid_quality q = solid_quality_of(&mesh);
+    const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
+    const struct solid_quality q = solid_quality_of(mesh);
     const double step = step_of(job, body, q.width);
     warn_of_material(job, body);
     warn_of_layers(body);
@@ -387,19 +385,19 @@ void solid_survey_warn(const struct job *job, int b)
         report_warn("body '%s': time.step is %.3g of the critical step of %s; it would be "
                     "unstable",
                     body->name, job->time.step / step,
-                    element_name(&mesh, q.width_worst, name));
+                    element_name(mesh, q.width_worst, name));
     if (q.jacobian_least < JACOBIAN)
         report_warn(
             "body '%s': %s is nearly folded or flat, its scaled Jacobian is %.2g; above "
             "%.1f is better",
-            body->name, element_name(&mesh, q.jacobian_worst, name), q.jacobian_least,
+            body->name, element_name(mesh, q.jacobian_worst, name), q.jacobian_least,
             JACOBIAN);
     if (q.aspect > ASPECT)
         report_warn(
             "body '%s': the edges of %s differ by a factor of %.3g; below %.0f is better",
-            body->name, element_name(&mesh, q.aspect_worst, name), q.aspect, ASPECT);
+            body->name, element_name(mesh, q.aspect_worst, name), q.aspect, ASPECT);
     if (q.n_parts > 1)
         report_warn("body '%s': its mesh falls into %d parts that have no node in common",
                     body->name, q.n_parts);
-    solid_mesh_clear(&mesh);
+    solid_mesh_clear(&own);
 }

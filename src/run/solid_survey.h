@@ -8,8 +8,9 @@
 struct job;
 struct mistakes;
 
-/* Lists what is wrong with meshes, sets and boundaries; files have been read.  Local. */
-void solid_survey_check(const struct job *job, struct mistakes *mistakes);
+/* Builds the meshes, to be kept with the job, and lists what is wrong with them, sets and
+ * boundaries; files have been read.  Local. */
+void solid_survey_check(struct job *job, struct mistakes *mistakes);
 /* About the largest step that the elements of all solids bear, without contacts; infinite
  * without any [s].  Local. */
 double solid_survey_step(const struct job *job);

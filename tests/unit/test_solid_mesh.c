@@ -156,6 +156,33 @@ TEST(boxes_of_hexahedra_and_tetrahedra)
     }
 }
 
+/* Whoever borrows the mesh that is kept gets that one; without one, another as good. */
+TEST(a_mesh_is_built_once_and_kept)
+{
+    struct job_body body = box_of(4, 3, 2);
+    struct job job = {.n_bodies = 1, .bodies = &body};
+    struct solid_mesh own;
+    const struct solid_mesh *kept = solid_mesh_keep(&body);
+    EXPECT(solid_mesh_keep(&body) == kept);
+    EXPECT(solid_mesh_borrow(&body, &own) == kept && own.n_nodes == 0);
+    solid_mesh_clear(&own);
+    EXPECT(kept->n_nodes == 60 && kept->n_elements == 24);
+    solid_mesh_release(&job);
+    EXPECT(body.solid.mesh == NULL);
+    EXPECT(solid_mesh_borrow(&body, &own) == &own && own.n_nodes == 60);
+    solid_mesh_clear(&own);
+}
+
+TEST(sides_are_counted_by_corners)
+{
+    int corners[4];
+    EXPECT(solid_mesh_side_corners(8, 5, corners) == 4 && corners[0] == 3 && corners[3] == 7);
+    EXPECT(solid_mesh_side_corners(4, 3, corners) == 3 && corners[0] == 2 && corners[2] == 3);
+    EXPECT(solid_mesh_side_corners(8, 6, corners) == 0);
+    EXPECT(solid_mesh_side_corners(4, 4, corners) == 0);
+    EXPECT(solid_mesh_side_corners(8, -1, corners) == 0);
+}
+
 TEST(a_plate_one_cell_thick_keeps_its_sides_apart)
 {
     struct job_body body = {.model = JOB_MODEL_SOLID,
