@@ -1,7 +1,4 @@
-/*
- * See solid_survey.h.  The critical step is that of a wave through the narrowest element, which
- * no mesh of such elements falls below by much; contacts are not in it.
- */
+/* See solid_survey.h. */
 #include "run/solid_survey.h"
 
 #include <math.h>
@@ -18,6 +15,7 @@
 #include "model/solid_mesh.h"
 #include "model/solid_quality.h"
 #include "model/solid_shape.h"
+#include "run/solid_step.h"
 
 enum { PATH = 96, TEXT = 160 };
 
@@ -234,31 +232,6 @@ static double wave_speed(const struct job_material *material)
                 (material->density * (1.0 + nu) * (1.0 - 2.0 * nu)));
 }
 
-/* What an element of this width allows, with damping taken at the half step [s]. */
-static double step_of(const struct job *job, const struct job_body *body, double width)
-{
-    const double omega = 2.0 * wave_speed(&job->materials[body->material]) / width;
-    const double damped = 0.5 * (body->solid.damping.mass / omega +
-                                 body->solid.damping.stiffness * omega); /* of critical [-] */
-    return 2.0 / omega * (sqrt(1.0 + damped * damped) - damped);
-}
-
-double solid_survey_step(const struct job *job)
-{
-    double least = (double)INFINITY;
-    for (int b = 0; b < job->n_bodies; b++) {
-        const struct job_body *body = &job->bodies[b];
-        struct solid_mesh own;
-        if (body->model != JOB_MODEL_SOLID)
-            continue;
-        const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
-        const double step = step_of(job, body, solid_quality_of(mesh).width);
-        solid_mesh_clear(&own);
-        least = step < least ? step : least;
-    }
-    return least;
-}
-
 /* "element 12 at (0.1, 0.2, 0.3) m" */
 static const char *element_name(const struct solid_mesh *mesh, int e, char text[TEXT])
 {
@@ -277,27 +250,39 @@ static void print_sets(const struct solid_mesh *mesh)
     }
 }
 
-static void print_cost(const struct job *job, const struct solid_quality *quality, int n_nodes)
+/* What elements allow of the step by themselves, and with the contacts that may be expected. */
+static void print_step(const struct job *job, const struct solid_mesh *mesh, int b,
+                       const struct bodies *bodies, const struct materials *materials,
+                       const struct limits_spheres *spheres)
 {
-    enum { NANOSECONDS = 200, BYTES_AN_ELEMENT = 500, BYTES_A_NODE = 300 };
-    const double n = (double)quality->n_hexahedra + (double)quality->n_tetrahedra;
-    const double steps = n * (job->time.end / job->time.step);
-    report_say(
-        "          %.3g element-steps: of the order of %.3g s on one rank; memory of the "
-        "order of %.3g MB",
-        steps, steps * NANOSECONDS * 1e-9,
-        (n * BYTES_AN_ELEMENT + (double)n_nodes * BYTES_A_NODE) * 1e-6);
+    const struct job_body *body = &job->bodies[b];
+    const struct solid_step alone = solid_step_alone(job, b);
+    const struct solid_step met = solid_step_with_contacts(job, bodies, materials, spheres, b);
+    const double step = job->time.step;
+    char name[TEXT];
+    report_say("          waves run at %.4g m/s, fastest through %s: critical step %.4g s "
+               "without contacts, the step is %.3g of it",
+               wave_speed(&job->materials[body->material]),
+               element_name(mesh, alone.element, name), alone.step, step / alone.step);
+    if (!met.of_spheres && !met.of_bodies)
+        return;
+    report_say("          with contacts of %s%s%s, most on node %lld of %s: about %.3g s, the "
+               "step is %.3g of it",
+               met.of_spheres ? "spheres" : "", met.of_spheres && met.of_bodies ? " and " : "",
+               met.of_bodies ? "bodies" : "", solid_quality_node_number(mesh, met.node),
+               element_name(mesh, met.element, name), met.step, step / met.step);
 }
 
-void solid_survey_print(const struct job *job, int b)
+void solid_survey_print(const struct job *job, const struct bodies *bodies,
+                        const struct materials *materials, const struct limits_spheres *spheres,
+                        int b)
 {
     const struct job_body *body = &job->bodies[b];
     const struct job_material *material = &job->materials[body->material];
     struct solid_mesh own;
-    char aspect[TEXT], jacobian[TEXT], width[TEXT];
+    char aspect[TEXT], jacobian[TEXT];
     const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
     const struct solid_quality q = solid_quality_of(mesh);
-    const double step = step_of(job, body, q.width);
     report_say("body      %s: solid, %s, %d hexahedra, %d tetrahedra, %d nodes, mass %.6g kg",
                body->name, material->name, q.n_hexahedra, q.n_tetrahedra, mesh->n_nodes,
                q.volume * material->density);
@@ -309,13 +294,8 @@ void solid_survey_print(const struct job *job, int b)
                element_name(mesh, q.aspect_worst, aspect));
     report_say("          scaled Jacobian %.3g in the mean, least %.3g, of %s", q.jacobian_mean,
                q.jacobian_least, element_name(mesh, q.jacobian_worst, jacobian));
-    report_say(
-        "          waves run at %.4g m/s, through %.4g m of %s: critical step about %.3g "
-        "s without contacts, the step is %.3g of it",
-        wave_speed(material), q.width, element_name(mesh, q.width_worst, width), step,
-        job->time.step / step);
+    print_step(job, mesh, b, bodies, materials, spheres);
     print_sets(mesh);
-    print_cost(job, &q, mesh->n_nodes);
     solid_mesh_clear(&own);
 }
 
@@ -377,21 +357,20 @@ void solid_survey_warn(const struct job *job, int b)
     char name[TEXT];
     const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
     const struct solid_quality q = solid_quality_of(mesh);
-    const double step = step_of(job, body, q.width);
+    const struct solid_step alone = solid_step_alone(job, b);
     warn_of_material(job, body);
     warn_of_layers(body);
     warn_of_flow(job, body);
-    if (job->time.step > step)
+    if (job->time.step > alone.step)
         report_warn("body '%s': time.step is %.3g of the critical step of %s; it would be "
                     "unstable",
-                    body->name, job->time.step / step,
-                    element_name(mesh, q.width_worst, name));
+                    body->name, job->time.step / alone.step,
+                    element_name(mesh, alone.element, name));
     if (q.jacobian_least < JACOBIAN)
         report_warn(
             "body '%s': %s is nearly folded or flat, its scaled Jacobian is %.2g; above "
             "%.1f is better",
-            body->name, element_name(mesh, q.jacobian_worst, name), q.jacobian_least,
-            JACOBIAN);
+            body->name, element_name(mesh, q.jacobian_worst, name), q.jacobian_least, JACOBIAN);
     if (q.aspect > ASPECT)
         report_warn(
             "body '%s': the edges of %s differ by a factor of %.3g; below %.0f is better",

@@ -101,11 +101,12 @@ static void print_body(const struct job *job, const struct body *body)
                    survey.closed ? "closed, facets look both ways" : "open");
 }
 
-void survey_print(const struct job *job, const struct bodies *bodies)
+void survey_print(const struct job *job, const struct bodies *bodies,
+                  const struct materials *materials, const struct limits_spheres *spheres)
 {
     for (int b = 0; b < bodies->n; b++)
         if (job->bodies[b].model == JOB_MODEL_SOLID)
-            solid_survey_print(job, b);
+            solid_survey_print(job, bodies, materials, spheres, b);
         else
             print_body(job, &bodies->list[b]);
 }

@@ -14,10 +14,11 @@ checked()
 }
 
 checked
-# Steel 8 mm x 0.2 m x 0.2 m; waves of 6001 m/s through cells of 2 mm; a regular polygon of 16 sides.
+# Steel 8 mm x 0.2 m x 0.2 m; a regular polygon of 16 sides. Waves of c = 6001 m/s through cells of 5 mm x 5 mm x
+# h = 2 mm: by (12.11) w^2 = 4 c^2 [nu/(1-nu) (1/h^2 + 2/(5 mm)^2) + (1-2 nu)/(1-nu)/h^2], 2/w = 3.1254e-7 s.
 says "body      plate: solid, steel, 6400 hexahedra, 0 tetrahedra, 8405 nodes, mass 2.512 kg"
-says "waves run at 6001 m/s, through 0.002 m of element"
-says "critical step about 3.33e-07 s without contacts, the step is 0.6 of it"
+says "waves run at 6001 m/s, fastest through element"
+says "critical step 3.125e-07 s without contacts, the step is 0.64 of it"
 says "set side: 800 nodes, 640 sides, 0 elements"
 says "volume 0.000122459 m3"
 says "body      pipe: solid, steel, 0 hexahedra, 3120 tetrahedra, 1092 nodes"
@@ -35,8 +36,44 @@ diff one three > /dev/null || why+=" tells something else;"
 result "the same on 3 ranks"
 
 checked --set time.step=4e-7
-says "warning: body 'plate': time.step is 1.2 of the critical step of element"
+says "warning: body 'plate': time.step is 1.28 of the critical step of element"
 result "a step that waves outrun"
+
+# stopped STEP: a run of the scene with this step is.
+stopped()
+{
+    timeout "$patience" "$bin/tremie" run "$scenes/solids.yaml" --out stopped --set time.step="$1" --set time.end=3.2us \
+        > said 2>&1
+    [ $? -eq 3 ] || why+=" is not stopped;"
+    rm -rf stopped
+}
+stopped 3.2e-7
+says "time.step = 3.2e-07 s is 1.02 of the critical step of body 'plate' with its contacts, 3.125e-07 s"
+result "a run goes by the same bound"
+
+# A cube of h = 0.1 m and c = 1000 m/s, nu = 0: 4 c^2/h^2 (12.11), with an eigenvalue from above. A sphere's linear spring of 1.5e8 N/m on one corner of
+# 1/8 of 1 kg adds 12, its own balls, (2/3 + 1/3) s E sqrt(3/4 h^2) a corner, 4 sqrt(3), in c^2/h^2.
+cube()
+{
+    timeout "$patience" "$bin/tremie" check "$scenes/cube.yaml" "$@" > said 2>&1 || why+=" is refused;"
+}
+cube
+says "critical step 9.999e-05 s without contacts"
+says "with contacts of spheres, most on node 1 of element 1 at (0.05, 0.05, 0.05) m: about 5e-05 s"
+cube --set "bodies.0.touches={what: bodies, stiffness: 1}"
+says "with contacts of spheres and bodies, most on node 1 of element 1 at (0.05, 0.05, 0.05) m: about 4.18e-05 s"
+result "springs on nodes"
+cube --set "bodies.0.touches={what: bodies, stiffness: 1}" --set time.step=auto
+says "steps of 2.9e-05 s"
+result "an automatic step"
+
+for scene in slide solid_results; do
+    timeout "$patience" "$bin/tremie" run "$scenes/$scene.yaml" --out auto --set time.step=auto > said 2>&1 ||
+        why+=" $scene fails;"
+    says "finished at step"
+    rm -rf auto
+done
+result "runs bear the automatic step"
 checked --set "bodies.0.mesh.cells=[40, 40, 1]"
 says "warning: body 'plate': 1 cell through the thickness: hourglass control bears the bending; 3 or more are better"
 result "a plate of one layer"
