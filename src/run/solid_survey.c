@@ -250,6 +250,22 @@ static void print_sets(const struct solid_mesh *mesh)
     }
 }
 
+/* Who is stopped by flowing becomes narrower, and then allows less. */
+static void print_flow(const struct job *job, const struct job_body *body)
+{
+    static const double MUCH = 0.05; /* strain */
+    const struct job_material *material = &job->materials[body->material];
+    const double yield =
+        material->n_hardening_table > 0 ? material->hardening_table[0].stress : material->yield;
+    const double v2 = vec3_dot(body->solid.velocity, body->solid.velocity);
+    const double strain = 0.5 * material->density * v2 / yield; /* of all its energy [-] */
+    if (yield > 0.0 && strain > MUCH)
+        report_say(
+            "          brought to rest it would flow by about %.3g in the mean, and by more "
+            "where it strikes: elements become narrower and allow less",
+            strain);
+}
+
 /* What elements allow of the step by themselves, and with the contacts that may be expected. */
 static void print_step(const struct job *job, const struct solid_mesh *mesh, int b,
                        const struct bodies *bodies, const struct materials *materials,
@@ -295,6 +311,7 @@ void solid_survey_print(const struct job *job, const struct bodies *bodies,
     report_say("          scaled Jacobian %.3g in the mean, least %.3g, of %s", q.jacobian_mean,
                q.jacobian_least, element_name(mesh, q.jacobian_worst, jacobian));
     print_step(job, mesh, b, bodies, materials, spheres);
+    print_flow(job, body);
     print_sets(mesh);
     solid_mesh_clear(&own);
 }

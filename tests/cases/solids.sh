@@ -38,6 +38,9 @@ result "the same on 3 ranks"
 checked --set time.step=4e-7
 says "warning: body 'plate': time.step is 1.28 of the critical step of element"
 result "a step that waves outrun"
+checked --set "bodies.1.velocity=[0, 0, 200]" # 7850 kg/m3 (200 m/s)^2 / 2 / 400 MPa
+says "brought to rest it would flow by about 0.393 in the mean"
+result "elements that will be pressed together"
 
 # stopped STEP: a run of the scene with this step is.
 stopped()
@@ -63,6 +66,16 @@ says "with contacts of spheres, most on node 1 of element 1 at (0.05, 0.05, 0.05
 cube --set "bodies.0.touches={what: bodies, stiffness: 1}"
 says "with contacts of spheres and bodies, most on node 1 of element 1 at (0.05, 0.05, 0.05) m: about 4.18e-05 s"
 result "springs on nodes"
+# What strikes rigid bodies is m = 4.18879 kg at 1 m/s: F = v sqrt(k m) = 25066 N, v sqrt(m/k) = 1.6711e-4 m deep. A block
+# of 0.3 m x 0.3 m x 0.2 m and 1 GPa yields by F (0.3 m)^2 / E V = 1.2533e-4 m; a plate of 2 m x 2 m bends by as much as the
+# contact is deep if its thickness^3 = 12 * 0.0056 F (2 m)^2 / E w = (0.3429 m)^3.
+cube
+says "being rigid neglects about 0.000125 m, 0.75 of the 0.000167 m by which contacts yield: a block under 2.51e+04 N, an impact"
+says "contacts yield, 0.000167 m, where a wall of the largest facet is about 0.343 m thick: a plate under 2.51e+04 N, an impact"
+# Four spheres weigh 4 m g = 164.4 N, and strike softer than that where k is 100 N/m.
+cube --set contact.stiffness=100 --set "gravity=[0, 0, -9.81]" --set spheres.0.packing.count=4 --set "spheres.0.packing.size=[0.2, 0.2]"
+says "a block under 164 N, weight of all spheres"
+result "what rigid bodies neglect"
 cube --set "bodies.0.touches={what: bodies, stiffness: 1}" --set time.step=auto
 says "steps of 2.9e-05 s"
 result "an automatic step"
