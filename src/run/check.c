@@ -711,9 +711,30 @@ static void print_start(const struct job *job, const struct comm *comm)
     simulation_destroy(&sim);
 }
 
+/* Time and memory, of so many spheres in the mean and at most. */
+static void print_cost(const struct job *job, double n_mean, double n_most, int n_ranks)
+{
+    static const double SECONDS_A_SPHERE = 60e-9;
+    const struct solid_survey_cost solids = solid_survey_cost(job);
+    const double n_steps = job->time.end / job->time.step;
+    const double seconds = n_steps * (n_mean * SECONDS_A_SPHERE + solids.seconds) / n_ranks;
+    const double bytes = n_most * SIMULATION_BYTES_A_SPHERE + n_ranks * solids.bytes;
+    char elements[64] = "";
+    if (solids.n_elements > 0.0)
+        snprintf(elements, sizeof elements, " and %.3g element-steps",
+                 solids.n_elements * n_steps);
+    report_say(
+        "cost      %.3g particle-steps%s: of the order of %.3g s on %d rank%s; memory of "
+        "the order of %.3g MB",
+        n_mean * n_steps, elements, seconds, n_ranks, n_ranks == 1 ? "" : "s", bytes * 1e-6);
+    if (solids.n_elements > 0.0)
+        report_say("          of that solids: %.3g MB on each rank, %.3g bytes an element",
+                   solids.bytes * 1e-6, solids.bytes / solids.n_elements);
+}
+
 void check_print(const struct job *job, const struct comm *comm)
 {
-    enum { NANOSECONDS_A_STEP = 60, START_MOST = 4000000 };
+    enum { START_MOST = 4000000 };
     struct extent scene = extent_nothing();
     struct bodies bodies;
     struct materials materials;
@@ -753,12 +774,7 @@ void check_print(const struct job *job, const struct comm *comm)
         n_mean += inflow.n_mean;
         n_most += inflow.n;
     }
-    const double particle_steps = n_mean * n_steps;
-    report_say(
-        "cost      %.3g particle-steps: of the order of %.3g s on %d rank%s; memory of the "
-        "order of %.3g MB",
-        particle_steps, particle_steps * NANOSECONDS_A_STEP * 1e-9 / n_ranks, n_ranks,
-        n_ranks == 1 ? "" : "s", n_most * SIMULATION_BYTES_A_SPHERE * 1e-6);
+    print_cost(job, n_mean, n_most, n_ranks);
     if (job->watch.motion + job->watch.overlap >= 1.0)
         report_warn("watch.motion and watch.overlap add up to 1 or more: a sphere could pass "
                     "through a surface unnoticed");

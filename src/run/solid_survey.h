@@ -18,6 +18,13 @@ void solid_survey_check(struct job *job, struct mistakes *mistakes);
 void solid_survey_print(const struct job *job, const struct bodies *bodies,
                         const struct materials *materials, const struct limits_spheres *spheres,
                         int b);
+/* What all solids of a job cost. */
+struct solid_survey_cost {
+    double n_elements;
+    double seconds; /* a step, on one rank, without contacts [s] */
+    double bytes;   /* of each rank, which begins with all of them */
+};
+struct solid_survey_cost solid_survey_cost(const struct job *job);
 /* Warns of what is allowed and probably not meant: of its elements, its material, the step.
  * Local. */
 void solid_survey_warn(const struct job *job, int b);
