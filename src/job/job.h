@@ -295,6 +295,8 @@ struct job_volume {
         *items)[4]; /* nodes of a point, line, triangle or quad, else -1; or an element first */
 };
 
+struct solid_mesh;
+
 /* What a deformable body has that a rigid one has not. */
 struct job_solid {
     enum job_mesh_kind kind;
@@ -320,6 +322,7 @@ struct job_solid {
     struct job_set *sets;
     struct job_boundary *boundary;
     struct job_volume volume; /* Gmsh, once it has been read */
+    struct solid_mesh *mesh;  /* kept by model/solid_mesh, which frees it; not a key */
 };
 
 enum job_model { JOB_MODEL_RIGID, JOB_MODEL_SOLID };

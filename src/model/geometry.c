@@ -375,18 +375,18 @@ static void build_shape(struct geometry *geometry, const struct job_body *body)
 /* The surface of a solid, at its nodes. */
 static void build_solid(struct geometry *geometry, const struct job_body *body)
 {
-    struct solid_mesh mesh;
+    struct solid_mesh own;
     int n_vertices, *nodes, (*facets)[4];
-    solid_mesh_build(&mesh, body);
-    const int n_facets = solid_mesh_skin(&mesh, &n_vertices, &nodes, &facets);
+    const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
+    const int n_facets = solid_mesh_skin(mesh, &n_vertices, &nodes, &facets);
     reserve(geometry, n_vertices, n_facets);
     for (int v = 0; v < n_vertices; v++)
-        geometry->vertices[geometry->n_vertices++] = mesh.nodes[nodes[v]];
+        geometry->vertices[geometry->n_vertices++] = mesh->nodes[nodes[v]];
     for (int f = 0; f < n_facets; f++)
         memcpy(geometry->facets[geometry->n_facets++], facets[f], sizeof *facets);
     free(nodes);
     free(facets);
-    solid_mesh_clear(&mesh);
+    solid_mesh_clear(&own);
 }
 
 void geometry_build(struct geometry *geometry, const struct job_body *body)

@@ -18,15 +18,26 @@
 
 /* ---------------------------------------------------------------------------------- sides */
 
-int solid_mesh_side_nodes(const int element[8], int side, int nodes[4])
+int solid_mesh_side_corners(int n_corners, int side, int corners[4])
 {
     static const int hexahedron[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
                                          {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
     static const int tetrahedron[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
-    const int n = solid_mesh_n_corners(element) == 8 ? 4 : 3;
-    nodes[3] = -1;
+    if (side < 0 || side >= (n_corners == 8 ? 6 : 4))
+        return 0;
+    const int n = n_corners == 8 ? 4 : 3;
     for (int k = 0; k < n; k++)
-        nodes[k] = element[n == 4 ? hexahedron[side][k] : tetrahedron[side][k]];
+        corners[k] = n == 4 ? hexahedron[side][k] : tetrahedron[side][k];
+    return n;
+}
+
+int solid_mesh_side_nodes(const int element[8], int side, int nodes[4])
+{
+    const int n = solid_mesh_side_corners(solid_mesh_n_corners(element), side, nodes);
+    for (int k = 0; k < n; k++)
+        nodes[k] = element[nodes[k]];
+    for (int k = n; k < 4; k++)
+        nodes[k] = -1;
     return n;
 }
 
@@ -523,4 +534,36 @@ void solid_mesh_clear(struct solid_mesh *mesh)
     free(mesh->node_numbers);
     free(mesh->element_numbers);
     *mesh = (struct solid_mesh){0};
+}
+
+/* --------------------------------------------------------------------------------- keeping */
+
+const struct solid_mesh *solid_mesh_keep(struct job_body *body)
+{
+    if (body->solid.mesh == NULL) {
+        struct solid_mesh *mesh = array_allocate(1, sizeof *mesh);
+        solid_mesh_build(mesh, body);
+        body->solid.mesh = mesh;
+    }
+    return body->solid.mesh;
+}
+
+const struct solid_mesh *solid_mesh_borrow(const struct job_body *body, struct solid_mesh *own)
+{
+    *own = (struct solid_mesh){0};
+    if (body->solid.mesh != NULL)
+        return body->solid.mesh;
+    solid_mesh_build(own, body);
+    return own;
+}
+
+void solid_mesh_release(struct job *job)
+{
+    for (int b = 0; b < job->n_bodies; b++) {
+        struct solid_mesh *mesh = job->bodies[b].solid.mesh;
+        if (mesh != NULL)
+            solid_mesh_clear(mesh);
+        free(mesh);
+        job->bodies[b].solid.mesh = NULL;
+    }
 }

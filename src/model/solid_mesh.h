@@ -8,7 +8,8 @@
  *
  * A hexahedron's sides are its bottom, its top, and those above the edges 0-1, 1-2, 2-3, 3-0
  * of the bottom; a tetrahedron's that of the nodes 0, 1, 2 and those above its edges 0-1, 1-2,
- * 2-0.
+ * 2-0.  Pressures (solid/solid_side.h) count them so too: there is one table of them,
+ * solid_mesh_side_corners().
  *
  * Elements of a file keep its order, nodes come by number; whatever comes from here depends on
  * the job alone.  Local, all of it.
@@ -20,6 +21,7 @@
 
 #include "base/vec3.h"
 
+struct job;
 struct job_body;
 
 enum { SOLID_MESH_SIDES = 6 }; /* that an element has room for */
@@ -51,6 +53,14 @@ struct solid_mesh {
 void solid_mesh_build(struct solid_mesh *mesh, const struct job_body *body);
 void solid_mesh_clear(struct solid_mesh *mesh);
 
+/* The body's mesh, built once and kept with it until solid_mesh_release(): building takes as
+ * long as some hundred steps do, and several rooms look at it before a run. */
+const struct solid_mesh *solid_mesh_keep(struct job_body *body);
+/* The one that is kept, or else one built in *own, which is to be cleared in any case. */
+const struct solid_mesh *solid_mesh_borrow(const struct job_body *body, struct solid_mesh *own);
+/* Frees those that are kept. */
+void solid_mesh_release(struct job *job);
+
 /* NULL where there is none of this name. */
 const struct solid_mesh_set *solid_mesh_find(const struct solid_mesh *mesh, const char *name);
 
@@ -62,8 +72,11 @@ static inline int solid_mesh_n_sides(const int element[8])
 {
     return element[4] < 0 ? 4 : 6;
 }
-/* The nodes of a side, counter-clockwise seen from outside; returns how many.  The fourth of
- * three is -1. */
+/* Which corners of an element with so many make a side, counter-clockwise seen from outside:
+ * 0321, 4567, 0154, 1265, 2376, 3047 of a hexahedron, 021, 013, 123, 203 of a tetrahedron.
+ * Returns how many; 0 where there is no such side. */
+int solid_mesh_side_corners(int n_corners, int side, int corners[4]);
+/* The nodes of a side likewise.  The fourth of three is -1. */
 int solid_mesh_side_nodes(const int element[8], int side, int nodes[4]);
 
 /* What lies behind side s of element e, at SOLID_MESH_SIDES * e + s: the number, counted so, of

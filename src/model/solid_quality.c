@@ -82,14 +82,6 @@ double solid_quality_volume(const struct solid_mesh *mesh, int element)
     return measure(mesh, element, &largest);
 }
 
-double solid_quality_width(const struct solid_mesh *mesh, int element)
-{
-    double largest;
-    const double volume = measure(mesh, element, &largest);
-    const double part = solid_mesh_n_corners(mesh->elements[element]) == 4 ? 3.0 : 1.0;
-    return part * volume / largest;
-}
-
 /* The three neighbours of each corner, right-handed; a tetrahedron's are the other three. */
 static const int AROUND_8[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
                                    {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
@@ -154,7 +146,6 @@ static void add_element(struct solid_quality *quality, const struct solid_mesh *
 {
     double aspect;
     const double jacobian = jacobian_of(mesh, e, &aspect);
-    const double width = solid_quality_width(mesh, e);
     const bool six_sided = solid_mesh_n_corners(mesh->elements[e]) == 8;
     quality->n_hexahedra += six_sided;
     quality->n_tetrahedra += !six_sided;
@@ -168,10 +159,6 @@ static void add_element(struct solid_quality *quality, const struct solid_mesh *
         quality->jacobian_least = jacobian;
         quality->jacobian_worst = e;
     }
-    if (!(width >= quality->width)) {
-        quality->width = width;
-        quality->width_worst = e;
-    }
 }
 
 struct solid_quality solid_quality_of(const struct solid_mesh *mesh)
@@ -181,7 +168,6 @@ struct solid_quality solid_quality_of(const struct solid_mesh *mesh)
                                     .low = {HUGE_VAL, HUGE_VAL, HUGE_VAL},
                                     .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL},
                                     .jacobian_least = HUGE_VAL,
-                                    .width = HUGE_VAL,
                                     .n_parts = count_parts(mesh)};
     for (int k = 0; k < mesh->n_nodes; k++) {
         const struct vec3 x = mesh->nodes[k];

@@ -21,15 +21,11 @@ struct solid_quality {
      * regular corner with edges so long: 1 for a cube and a regular tetrahedron, 0 for what is
      * flat.  Of an element that of its worst corner. */
     double jacobian_least, jacobian_mean; /* [-] */
-    double width;                         /* least of all, see solid_quality_width [m] */
-    int aspect_worst, jacobian_worst, width_worst; /* such elements */
+    int aspect_worst, jacobian_worst;     /* such elements */
 };
 
 struct solid_quality solid_quality_of(const struct solid_mesh *mesh);
 
-/* Volume over the largest side: a wave passes no faster.  Of a tetrahedron a third of its
- * smallest altitude becomes that altitude [m]. */
-double solid_quality_width(const struct solid_mesh *mesh, int element);
 double solid_quality_volume(const struct solid_mesh *mesh, int element);
 struct vec3 solid_quality_centre(const struct solid_mesh *mesh, int element);
 

@@ -20,6 +20,7 @@
 #include "run/inflow.h"
 #include "run/limits.h"
 #include "run/simulation.h"
+#include "run/solid_step.h"
 #include "run/solid_survey.h"
 #include "run/start.h"
 #include "run/step.h"
@@ -29,8 +30,8 @@
 #include "store/sphere_file.h"
 #include "store/surface_file.h"
 
-/* Share of the elements' critical step that the automatic step takes: contacts need the rest.
- */
+/* Share of the critical step of solids, with contacts, that the automatic step takes: elements
+ * that are pressed together allow less. */
 static const double ELEMENTS_SHARE = 0.7;
 
 enum { ALL_PAIRS_MOST = 20000 }; /* 2e8 pairs */
@@ -122,6 +123,8 @@ static double foresee_speed(const struct job *job, const struct bodies *bodies,
         const struct body *body = &bodies->list[b];
         speed = body->speed_max > speed ? body->speed_max : speed;
         speed = body->surface_speed_max > speed ? body->surface_speed_max : speed;
+        const double own = vec3_norm(job->bodies[b].solid.velocity); /* of one that deforms */
+        speed = own > speed ? own : speed;
     }
     return speed;
 }
@@ -153,10 +156,21 @@ static void round_times(struct job *job)
     }
 }
 
-static void choose_times(struct job *job, const struct packings *packings,
-                         const struct packing *before, double speed)
+/* Insertions bring some of all spheres. */
+static void add_inflows(const struct job *job, struct limits_spheres *all)
 {
-    struct limits limits = limits_nothing(speed);
+    for (int k = 0; k < job->n_insertions; k++) {
+        const struct inflow inflow = inflow_of(job, k);
+        all->speed = inflow.speed > all->speed ? inflow.speed : all->speed;
+        all->mass += inflow.mass;
+    }
+}
+
+static void choose_times(struct job *job, const struct bodies *bodies,
+                         const struct packings *packings, const struct packing *before,
+                         struct limits_spheres *all)
+{
+    struct limits limits = limits_nothing(all);
     struct materials materials;
     materials_build(&materials, job);
     for (int g = 0; g < job->n_spheres; g++)
@@ -164,10 +178,10 @@ static void choose_times(struct job *job, const struct packings *packings,
     add_limits(&limits, job, &materials, before);
     for (int k = 0; k < job->n_insertions; k++)
         inflow_add_limits(&limits, job, &materials, k);
-    materials_clear(&materials);
     if (limits.rayleigh < 1e299)
         job->time.step = limits_step(&limits, job->time.safety);
-    const double solids = ELEMENTS_SHARE * solid_survey_step(job);
+    const double solids = ELEMENTS_SHARE * solid_step_least(job, bodies, &materials, all);
+    materials_clear(&materials);
     if (solids < 1e299 && (!(job->time.step > 0.0) || solids < job->time.step))
         job->time.step = critical_step_round_down(solids);
     round_times(job);
@@ -346,11 +360,12 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
     struct extent scene = extent_nothing();
     const int *grid = job->decomposition.fixed;
     int64_t n_spheres = 0;
-    double speed = 0.0;   /* at the start [m/s] */
     double largest = 0.0; /* radius [m] */
+    struct limits_spheres all;
     struct packings packings = {0, NULL};
     struct bodies bodies = {.n = 0};
     struct chain before = {.path = NULL};
+    limits_spheres_init(&all, job);
     read_surfaces(job, mistakes);
     if (mistakes->n == 0)
         solid_survey_check(job, mistakes);
@@ -367,7 +382,8 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
         extent_add(&scene, summary.extent.low, 0.0);
         extent_add(&scene, summary.extent.high, 0.0);
         n_spheres += packing->n;
-        speed = summary.speed > speed ? summary.speed : speed;
+        all.speed = summary.speed > all.speed ? summary.speed : all.speed;
+        all.mass += summary.mass;
         largest = summary.radius_most > largest ? summary.radius_most : largest;
         if (g >= 0 && job->spheres[g].file != NULL)
             job->spheres[g].sum = checksum(job->spheres[g].file);
@@ -393,18 +409,17 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes)
         inflow_check(job, &bodies, &scene.low, &scene.high, mistakes);
         choose_domain(job, &scene);
         start_check(job, &bodies, &packings, &before.packing, mistakes);
-        for (int k = 0; k < job->n_insertions; k++) {
-            const double incoming = inflow_of(job, k).speed;
-            speed = incoming > speed ? incoming : speed;
-        }
+        add_inflows(job, &all);
+        all.speed = foresee_speed(job, &bodies, all.speed);
         if (job->time.step == 0.0)
-            choose_times(job, &packings, &before.packing, foresee_speed(job, &bodies, speed));
+            choose_times(job, &bodies, &packings, &before.packing, &all);
         if (mistakes->n == 0)
             inflow_check_room(job, &bodies, mistakes);
     }
     packings_close(&packings);
     chain_close(&before);
     bodies_clear(&bodies);
+    limits_spheres_clear(&all);
     return mistakes->n == 0;
 }
 
@@ -473,9 +488,10 @@ static void print_limits(const struct job *job, const struct limits *limits)
 
 static void print_group(const struct job *job, const char *name, const struct packing *packing,
                         const struct group_summary *s, const struct materials *materials,
-                        double speed)
+                        struct limits_spheres *all)
 {
-    struct limits limits = limits_nothing(speed);
+    struct limits limits = limits_nothing(all);
+    const double speed = all->speed;
     report_say("spheres   %s: %lld of %s, radius %.4g .. %.4g m, mass %.4g kg", name,
                (long long)s->n,
                s->material >= 0 ? job->materials[s->material].name : "several materials",
@@ -494,11 +510,12 @@ static void print_group(const struct job *job, const char *name, const struct pa
 
 /* All groups; returns how many spheres there are. */
 static void print_insertion(const struct job *job, int k, const struct materials *materials,
-                            double speed)
+                            struct limits_spheres *all)
 {
     const struct job_insertion *insertion = &job->insertions[k];
     const struct inflow inflow = inflow_of(job, k);
-    struct limits limits = limits_nothing(speed);
+    struct limits limits = limits_nothing(all);
+    const double speed = all->speed;
     report_say(
         "insert    %s: %.0f spheres, %.4g kg, expected from %.6g s on; radius %.4g .. %.4g "
         "m, %.4g kg each in the mean",
@@ -519,7 +536,7 @@ static void print_insertion(const struct job *job, int k, const struct materials
 
 /* The spheres that another job has left, group by group. */
 static void print_chain(const struct job *job, const struct chain *chain,
-                        const struct materials *materials, double speed)
+                        const struct materials *materials, struct limits_spheres *all)
 {
     const int n_groups = job_n_groups(job);
     int64_t *counts = array_allocate((size_t)n_groups, sizeof *counts);
@@ -537,21 +554,20 @@ static void print_chain(const struct job *job, const struct chain *chain,
             if (chain->group_of[k] == g)
                 group.rows[group.n++] = chain->packing.rows[k];
         const struct group_summary summary = summarise(job, &group);
-        print_group(job, job_group_name(job, g), &group, &summary, materials, speed);
+        print_group(job, job_group_name(job, g), &group, &summary, materials, all);
     }
     free(group.rows);
     free(counts);
 }
 
 static int64_t print_groups(const struct job *job, const struct bodies *bodies,
+                            const struct materials *materials, struct limits_spheres *all,
                             struct extent *scene, double *radius_most)
 {
     struct group_summary *groups = array_allocate((size_t)job->n_spheres, sizeof *groups);
-    struct materials materials;
     struct packings packings;
     struct mistakes mistakes;
     struct chain before = {.path = NULL};
-    double speed = 0.0;
     int64_t n = 0;
     mistakes_init(&mistakes);
     CHECK(!job->start.given || chain_open(&before, job, &mistakes),
@@ -561,34 +577,30 @@ static int64_t print_groups(const struct job *job, const struct bodies *bodies,
     mistakes_clear(&mistakes);
     const struct group_summary already = summarise(job, &before.packing);
     if (already.n > 0) {
-        speed = already.speed;
+        all->speed = already.speed;
+        all->mass = already.mass;
         extent_add(scene, already.extent.low, 0.0);
         extent_add(scene, already.extent.high, 0.0);
         n += already.n;
     }
     for (int g = 0; g < job->n_spheres; g++) {
         groups[g] = summarise(job, &packings.groups[g]);
-        speed = groups[g].speed > speed ? groups[g].speed : speed;
+        all->speed = groups[g].speed > all->speed ? groups[g].speed : all->speed;
+        all->mass += groups[g].mass;
         *radius_most =
             groups[g].radius_most > *radius_most ? groups[g].radius_most : *radius_most;
         extent_add(scene, groups[g].extent.low, 0.0);
         extent_add(scene, groups[g].extent.high, 0.0);
         n += groups[g].n;
     }
-    for (int k = 0; k < job->n_insertions; k++) {
-        const double incoming = inflow_of(job, k).speed;
-        speed = incoming > speed ? incoming : speed;
-    }
-    materials_build(&materials, job);
-    speed = foresee_speed(job, bodies, speed);
+    add_inflows(job, all);
+    all->speed = foresee_speed(job, bodies, all->speed);
     if (already.n > 0)
-        print_chain(job, &before, &materials, speed);
+        print_chain(job, &before, materials, all);
     for (int g = 0; g < job->n_spheres; g++)
-        print_group(job, job->spheres[g].name, &packings.groups[g], &groups[g], &materials,
-                    speed);
+        print_group(job, job->spheres[g].name, &packings.groups[g], &groups[g], materials, all);
     for (int k = 0; k < job->n_insertions; k++)
-        print_insertion(job, k, &materials, speed);
-    materials_clear(&materials);
+        print_insertion(job, k, materials, all);
     packings_close(&packings);
     chain_close(&before);
     free(groups);
@@ -699,20 +711,47 @@ static void print_start(const struct job *job, const struct comm *comm)
     simulation_destroy(&sim);
 }
 
+/* Time and memory, of so many spheres in the mean and at most. */
+static void print_cost(const struct job *job, double n_mean, double n_most, int n_ranks)
+{
+    static const double SECONDS_A_SPHERE = 60e-9;
+    const struct solid_survey_cost solids = solid_survey_cost(job);
+    const double n_steps = job->time.end / job->time.step;
+    const double seconds = n_steps * (n_mean * SECONDS_A_SPHERE + solids.seconds) / n_ranks;
+    const double bytes = n_most * SIMULATION_BYTES_A_SPHERE + n_ranks * solids.bytes;
+    char elements[64] = "";
+    if (solids.n_elements > 0.0)
+        snprintf(elements, sizeof elements, " and %.3g element-steps",
+                 solids.n_elements * n_steps);
+    report_say(
+        "cost      %.3g particle-steps%s: of the order of %.3g s on %d rank%s; memory of "
+        "the order of %.3g MB",
+        n_mean * n_steps, elements, seconds, n_ranks, n_ranks == 1 ? "" : "s", bytes * 1e-6);
+    if (solids.n_elements > 0.0)
+        report_say("          of that solids: %.3g MB on each rank, %.3g bytes an element",
+                   solids.bytes * 1e-6, solids.bytes / solids.n_elements);
+}
+
 void check_print(const struct job *job, const struct comm *comm)
 {
-    enum { NANOSECONDS_A_STEP = 60, START_MOST = 4000000 };
+    enum { START_MOST = 4000000 };
     struct extent scene = extent_nothing();
     struct bodies bodies;
+    struct materials materials;
+    struct limits_spheres all;
     const int n_ranks = comm->n_ranks;
     const double n_steps = job->time.end / job->time.step;
     report_say("job       %s: %s", job->path, job->title);
     report_say("time      %.6g s in %.0f steps of %.6g s", job->time.end, n_steps,
                job->time.step);
     bodies_build(&bodies, job);
+    materials_build(&materials, job);
+    limits_spheres_init(&all, job);
     double radius_most = 0.0;
-    const int64_t n = print_groups(job, &bodies, &scene, &radius_most);
-    survey_print(job, &bodies);
+    const int64_t n = print_groups(job, &bodies, &materials, &all, &scene, &radius_most);
+    survey_print(job, &bodies, &materials, &all);
+    limits_spheres_clear(&all);
+    materials_clear(&materials);
     warn_of_ends(job, &bodies, radius_most);
     warn_of_thin_removals(job, &bodies, radius_most);
     inflow_warn(job, &bodies);
@@ -735,12 +774,7 @@ void check_print(const struct job *job, const struct comm *comm)
         n_mean += inflow.n_mean;
         n_most += inflow.n;
     }
-    const double particle_steps = n_mean * n_steps;
-    report_say(
-        "cost      %.3g particle-steps: of the order of %.3g s on %d rank%s; memory of the "
-        "order of %.3g MB",
-        particle_steps, particle_steps * NANOSECONDS_A_STEP * 1e-9 / n_ranks, n_ranks,
-        n_ranks == 1 ? "" : "s", n_most * SIMULATION_BYTES_A_SPHERE * 1e-6);
+    print_cost(job, n_mean, n_most, n_ranks);
     if (job->watch.motion + job->watch.overlap >= 1.0)
         report_warn("watch.motion and watch.overlap add up to 1 or more: a sphere could pass "
                     "through a surface unnoticed");

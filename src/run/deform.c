@@ -144,29 +144,29 @@ static void build_body(struct deform *deform, const struct simulation *sim, int 
     struct deform_body *own = &deform->list[deform->n++];
     const struct job_body *body = &sim->job->bodies[b];
     struct body_skin *skin = sim->bodies.list[b].skin;
-    struct solid_mesh mesh;
+    struct solid_mesh built;
     int n_vertices, *nodes, (*facets)[4];
     *own = (struct deform_body){.body = b,
                                 .first_node = deform->n_nodes,
                                 .first_element = deform->n_elements,
                                 .first_ball = deform->n_balls};
-    solid_mesh_build(&mesh, body);
-    solid_mesh_skin(&mesh, &n_vertices, &nodes, &facets);
+    const struct solid_mesh *mesh = solid_mesh_borrow(body, &built);
+    solid_mesh_skin(mesh, &n_vertices, &nodes, &facets);
     CHECK(n_vertices == sim->bodies.list[b].mesh.n_corners, "a skin of %d vertices",
           n_vertices);
-    build_solid(&own->solid, &mesh, body, &sim->job->materials[body->material], isa);
-    prescribe(&own->solid, &mesh, body);
+    build_solid(&own->solid, mesh, body, &sim->job->materials[body->material], isa);
+    prescribe(&own->solid, mesh, body);
     deform_share_init(&own->share, sim->comm, &own->solid);
     deform_skin_init(&own->skin, nodes, &sim->bodies.list[b]);
     for (int v = 0; v < n_vertices; v++)
         skin->inverse_mass[v] = 1.0 / own->solid.mass[nodes[v]];
     if (body->solid.touches.what != JOB_TOUCHES_SPHERES)
-        add_balls(deform, own, &mesh, &sim->bodies.list[b]);
+        add_balls(deform, own, mesh, &sim->bodies.list[b]);
     deform_skin_renew(own, &sim->bodies.list[b]);
     deform->n_nodes += own->solid.n_nodes;
     deform->n_elements += own->solid.n_elements;
     free(facets);
-    solid_mesh_clear(&mesh);
+    solid_mesh_clear(&built);
 }
 
 void deform_init(struct deform *deform, const struct simulation *sim, enum isa isa)

@@ -16,6 +16,7 @@
 #include "base/report.h"
 #include "base/timer.h"
 #include "job/job.h"
+#include "model/solid_mesh.h"
 #include "run/control.h"
 #include "run/inflow.h"
 #include "run/intake.h"
@@ -470,13 +471,14 @@ static int finish(struct drive *drive, int status)
     return status;
 }
 
-int drive_run(const struct comm *comm, const struct options *options, const struct job *job,
+int drive_run(const struct comm *comm, const struct options *options, struct job *job,
               const char *job_text)
 {
     struct drive drive = {.comm = comm, .options = options, .job = job, .job_text = job_text};
     int status = open_folder(&drive);
     if (status == REPORT_FINISHED) {
         status = prepare(&drive);
+        solid_mesh_release(job);
         if (status == REPORT_FINISHED) {
             drive.first_step = drive.sim.step;
             drive.started = timer_now();

@@ -9,6 +9,7 @@
 #include "base/comm.h"
 #include "base/report.h"
 #include "job/job.h"
+#include "model/solid_mesh.h"
 #include "run/check.h"
 #include "run/options.h"
 #include "store/checkpoint.h"
@@ -104,6 +105,15 @@ int intake_share(const struct comm *comm, const struct options *options, struct 
     }
     if (size > 0)
         surface_file_share(job, comm);
+    for (int b = 0; size > 0 && b < job->n_bodies; b++)
+        if (job->bodies[b].model == JOB_MODEL_SOLID)
+            (void)solid_mesh_keep(&job->bodies[b]);
     mistakes_clear(&mistakes);
     return size > 0 ? REPORT_FINISHED : REPORT_BAD_INPUT;
+}
+
+void intake_clear(struct job *job)
+{
+    solid_mesh_release(job);
+    job_clear(job);
 }

@@ -20,6 +20,8 @@ bool intake_read(struct job *job, const struct options *options, int n_ranks,
  * text, which the caller frees.  Returns a REPORT_ status.  Collective. */
 int intake_share(const struct comm *comm, const struct options *options, struct job *job,
                  char **text);
+/* Frees the job and the meshes that were built of it. */
+void intake_clear(struct job *job);
 /* The folder of a run or study, as the options or the job's name have it.  The caller frees
  * it. */
 char *intake_folder(const struct options *options);

@@ -11,6 +11,7 @@
 #define TREMIE_RUN_LIMITS_H
 
 struct job;
+struct material_pair;
 struct materials;
 struct packing_sphere;
 
@@ -20,21 +21,51 @@ struct limits_impact {
     const char *partner; /* material */
 };
 
+/* Radii of the spheres of a material; `most` is 0 where there are none [m]. */
+struct limits_sizes {
+    double least, most;
+};
+
+/* All spheres that a run will have, in short. */
+struct limits_spheres {
+    double speed; /* highest that can be foreseen [m/s] */
+    double mass;  /* of all together [kg] */
+    int n_materials;
+    struct limits_sizes *sizes; /* one a material */
+};
+
 struct limits {
     double rayleigh; /* least of the spheres [s]                                      (6.1) */
     double springs;  /* critical step of such contacts, least of all [s]           (6.7) */
-    double speed;    /* highest that can be foreseen [m/s] */
+    double speed;    /* as of limits_spheres [m/s] */
     double overlap;  /* largest of an impact at that speed, over radius [-] */
     struct limits_impact shortest, longest;
+    struct limits_spheres *all; /* where sizes of spheres are noted */
 };
 
+/* No sphere yet, none in motion. */
+void limits_spheres_init(struct limits_spheres *spheres, const struct job *job);
+void limits_spheres_clear(struct limits_spheres *spheres);
+
 /* No sphere yet: everything is infinite. */
-struct limits limits_nothing(double speed);
-/* What this sphere allows, with whatever partners its material has; limits->speed is given. */
+struct limits limits_nothing(struct limits_spheres *all);
+/* What this sphere allows, with whatever partners its material has.  Its size is noted. */
 void limits_add(struct limits *limits, const struct job *job, const struct materials *materials,
                 const struct packing_sphere *sphere);
 /* Speed after a fall through half the domain along gravity; 1 m/s without gravity. */
 double limits_fall_speed(const struct job *job);
+
+/* One of the spheres on a wall: an impact as fast as can be foreseen, and a contact under as
+ * much as may rest on it, a column of its like as high as the domain, or all spheres. */
+struct limits_strike {
+    double mass; /* [kg] */
+    double overlap,
+        force; /* of the impact at its deepest, on a wall that does not yield [m], [N] */
+    double struck, pressed; /* contact radii of the impact and of what rests; 0: nothing [m] */
+};
+struct limits_strike limits_strike(const struct limits_spheres *spheres, const struct job *job,
+                                   const struct material_pair *pair, int material,
+                                   double radius);
 
 /* The step that `step: auto` takes: `safety` of the Rayleigh step, but no more than four fifths
  * of what the springs allow, rounded down to two digits [s]. */

@@ -89,16 +89,16 @@ void probes_init(struct probes *probes, const struct simulation *sim)
     probes->list = array_allocate((size_t)probes->n, sizeof *probes->list);
     for (int k = 0; k < sim->deform.n && probes->n > 0; k++) {
         const struct job_body *body = &job->bodies[sim->deform.list[k].body];
-        struct solid_mesh mesh;
-        solid_mesh_build(&mesh, body);
+        struct solid_mesh own;
+        const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
         for (int p = 0; p < probes->n; p++) {
             if (strcmp(job->output.probes[p].body, body->name) != 0)
                 continue;
             probes->list[p] = (struct probe){.asked = &job->output.probes[p], .deform = k};
-            find_items(&probes->list[p], &mesh);
+            find_items(&probes->list[p], mesh);
             share_out(&probes->list[p], &sim->deform.list[k].solid);
         }
-        solid_mesh_clear(&mesh);
+        solid_mesh_clear(&own);
     }
 }
 

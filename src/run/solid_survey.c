@@ -1,7 +1,4 @@
-/*
- * See solid_survey.h.  The critical step is that of a wave through the narrowest element, which
- * no mesh of such elements falls below by much; contacts are not in it.
- */
+/* See solid_survey.h. */
 #include "run/solid_survey.h"
 
 #include <math.h>
@@ -18,6 +15,7 @@
 #include "model/solid_mesh.h"
 #include "model/solid_quality.h"
 #include "model/solid_shape.h"
+#include "run/solid_step.h"
 
 enum { PATH = 96, TEXT = 160 };
 
@@ -183,13 +181,12 @@ static void check_probe(const struct survey *survey, int k)
         FIND(survey, probe->place, "%s: set '%s' has none; some are expected", path, name);
 }
 
-static void check_body(const struct job *job, int b, struct mistakes *mistakes)
+static void check_body(struct job *job, int b, struct mistakes *mistakes)
 {
-    const struct job_body *body = &job->bodies[b];
+    struct job_body *body = &job->bodies[b];
     const struct job_solid *solid = &body->solid;
     const bool file = solid->kind == JOB_MESH_GMSH;
     const struct job_place nowhere = {0, 0};
-    struct solid_mesh mesh;
     if (file ? !group_is_there(body, mistakes)
              : solid_shape_n_elements(body) > (double)GMSH_ELEMENTS_MOST) {
         if (!file)
@@ -198,14 +195,14 @@ static void check_body(const struct job *job, int b, struct mistakes *mistakes)
                          solid_shape_n_elements(body), GMSH_ELEMENTS_MOST);
         return;
     }
-    solid_mesh_build(&mesh, body);
-    const struct survey survey = {job, body, &mesh, b, mistakes};
-    solid_quality_check(&mesh, body->name, file ? body->file : job->path,
+    const struct solid_mesh *mesh = solid_mesh_keep(body);
+    const struct survey survey = {job, body, mesh, b, mistakes};
+    solid_quality_check(mesh, body->name, file ? body->file : job->path,
                         file ? nowhere : body->place, mistakes);
     check_sets(&survey);
     for (int k = 0; k < solid->n_boundary; k++) {
         const struct job_boundary *asked = &solid->boundary[k];
-        const struct solid_mesh_set *set = solid_mesh_find(&mesh, asked->set);
+        const struct solid_mesh_set *set = solid_mesh_find(mesh, asked->set);
         char path[PATH];
         snprintf(path, sizeof path, "bodies.%d.boundary.%d.set", b, k);
         if (set == NULL)
@@ -216,10 +213,9 @@ static void check_body(const struct job *job, int b, struct mistakes *mistakes)
     for (int k = 0; k < job->output.n_probes; k++)
         check_probe(&survey, k);
     check_conflicts(&survey);
-    solid_mesh_clear(&mesh);
 }
 
-void solid_survey_check(const struct job *job, struct mistakes *mistakes)
+void solid_survey_check(struct job *job, struct mistakes *mistakes)
 {
     for (int b = 0; b < job->n_bodies; b++)
         if (job->bodies[b].model == JOB_MODEL_SOLID)
@@ -234,31 +230,6 @@ static double wave_speed(const struct job_material *material)
     const double nu = material->poisson;
     return sqrt(material->young * (1.0 - nu) /
                 (material->density * (1.0 + nu) * (1.0 - 2.0 * nu)));
-}
-
-/* What an element of this width allows, with damping taken at the half step [s]. */
-static double step_of(const struct job *job, const struct job_body *body, double width)
-{
-    const double omega = 2.0 * wave_speed(&job->materials[body->material]) / width;
-    const double damped = 0.5 * (body->solid.damping.mass / omega +
-                                 body->solid.damping.stiffness * omega); /* of critical [-] */
-    return 2.0 / omega * (sqrt(1.0 + damped * damped) - damped);
-}
-
-double solid_survey_step(const struct job *job)
-{
-    double least = (double)INFINITY;
-    for (int b = 0; b < job->n_bodies; b++) {
-        const struct job_body *body = &job->bodies[b];
-        struct solid_mesh mesh;
-        if (body->model != JOB_MODEL_SOLID)
-            continue;
-        solid_mesh_build(&mesh, body);
-        const double step = step_of(job, body, solid_quality_of(&mesh).width);
-        solid_mesh_clear(&mesh);
-        least = step < least ? step : least;
-    }
-    return least;
 }
 
 /* "element 12 at (0.1, 0.2, 0.3) m" */
@@ -279,46 +250,97 @@ static void print_sets(const struct solid_mesh *mesh)
     }
 }
 
-static void print_cost(const struct job *job, const struct solid_quality *quality, int n_nodes)
+/* Who is stopped by flowing becomes narrower, and then allows less. */
+static void print_flow(const struct job *job, const struct job_body *body)
 {
-    enum { NANOSECONDS = 200, BYTES_AN_ELEMENT = 500, BYTES_A_NODE = 300 };
-    const double n = (double)quality->n_hexahedra + (double)quality->n_tetrahedra;
-    const double steps = n * (job->time.end / job->time.step);
-    report_say(
-        "          %.3g element-steps: of the order of %.3g s on one rank; memory of the "
-        "order of %.3g MB",
-        steps, steps * NANOSECONDS * 1e-9,
-        (n * BYTES_AN_ELEMENT + (double)n_nodes * BYTES_A_NODE) * 1e-6);
+    static const double MUCH = 0.05; /* strain */
+    const struct job_material *material = &job->materials[body->material];
+    const double yield =
+        material->n_hardening_table > 0 ? material->hardening_table[0].stress : material->yield;
+    const double v2 = vec3_dot(body->solid.velocity, body->solid.velocity);
+    const double strain = 0.5 * material->density * v2 / yield; /* of all its energy [-] */
+    if (yield > 0.0 && strain > MUCH)
+        report_say(
+            "          brought to rest it would flow by about %.3g in the mean, and by more "
+            "where it strikes: elements become narrower and allow less",
+            strain);
 }
 
-void solid_survey_print(const struct job *job, int b)
+/* What elements allow of the step by themselves, and with the contacts that may be expected. */
+static void print_step(const struct job *job, const struct solid_mesh *mesh, int b,
+                       const struct bodies *bodies, const struct materials *materials,
+                       const struct limits_spheres *spheres)
+{
+    const struct job_body *body = &job->bodies[b];
+    const struct solid_step alone = solid_step_alone(job, b);
+    const struct solid_step met = solid_step_with_contacts(job, bodies, materials, spheres, b);
+    const double step = job->time.step;
+    char name[TEXT];
+    report_say("          waves run at %.4g m/s, fastest through %s: critical step %.4g s "
+               "without contacts, the step is %.3g of it",
+               wave_speed(&job->materials[body->material]),
+               element_name(mesh, alone.element, name), alone.step, step / alone.step);
+    if (!met.of_spheres && !met.of_bodies)
+        return;
+    report_say("          with contacts of %s%s%s, most on node %lld of %s: about %.3g s, the "
+               "step is %.3g of it",
+               met.of_spheres ? "spheres" : "", met.of_spheres && met.of_bodies ? " and " : "",
+               met.of_bodies ? "bodies" : "", solid_quality_node_number(mesh, met.node),
+               element_name(mesh, met.element, name), met.step, step / met.step);
+}
+
+void solid_survey_print(const struct job *job, const struct bodies *bodies,
+                        const struct materials *materials, const struct limits_spheres *spheres,
+                        int b)
 {
     const struct job_body *body = &job->bodies[b];
     const struct job_material *material = &job->materials[body->material];
-    struct solid_mesh mesh;
-    char aspect[TEXT], jacobian[TEXT], width[TEXT];
-    solid_mesh_build(&mesh, body);
-    const struct solid_quality q = solid_quality_of(&mesh);
-    const double step = step_of(job, body, q.width);
+    struct solid_mesh own;
+    char aspect[TEXT], jacobian[TEXT];
+    const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
+    const struct solid_quality q = solid_quality_of(mesh);
     report_say("body      %s: solid, %s, %d hexahedra, %d tetrahedra, %d nodes, mass %.6g kg",
-               body->name, material->name, q.n_hexahedra, q.n_tetrahedra, mesh.n_nodes,
+               body->name, material->name, q.n_hexahedra, q.n_tetrahedra, mesh->n_nodes,
                q.volume * material->density);
     report_say("          x %.4g .. %.4g, y %.4g .. %.4g, z %.4g .. %.4g m", q.low.x, q.high.x,
                q.low.y, q.high.y, q.low.z, q.high.z);
     report_say("          volume %.6g m3, surface %.4g m2 in %d sides", q.volume, q.area,
                q.n_sides);
     report_say("          longest over shortest edge up to %.3g, of %s", q.aspect,
-               element_name(&mesh, q.aspect_worst, aspect));
+               element_name(mesh, q.aspect_worst, aspect));
     report_say("          scaled Jacobian %.3g in the mean, least %.3g, of %s", q.jacobian_mean,
-               q.jacobian_least, element_name(&mesh, q.jacobian_worst, jacobian));
-    report_say(
-        "          waves run at %.4g m/s, through %.4g m of %s: critical step about %.3g "
-        "s without contacts, the step is %.3g of it",
-        wave_speed(material), q.width, element_name(&mesh, q.width_worst, width), step,
-        job->time.step / step);
-    print_sets(&mesh);
-    print_cost(job, &q, mesh.n_nodes);
-    solid_mesh_clear(&mesh);
+               q.jacobian_least, element_name(mesh, q.jacobian_worst, jacobian));
+    print_step(job, mesh, b, bodies, materials, spheres);
+    print_flow(job, body);
+    print_sets(mesh);
+    solid_mesh_clear(&own);
+}
+
+/* As `make bench-elements` measures (tests/bench/README.md): forces, and nodes as they are
+ * moved, of elements that do not stay in the cache. */
+static const double SECONDS_A_HEXAHEDRON = 136e-9, SECONDS_A_TETRAHEDRON = 62e-9;
+/* Most memory at any time of a million hexahedra and of 750 000 tetrahedra (there too), 720 and
+ * 404 bytes an element, shared out to elements and nodes. */
+enum { BYTES_AN_ELEMENT = 340, BYTES_A_NODE = 370 };
+
+struct solid_survey_cost solid_survey_cost(const struct job *job)
+{
+    struct solid_survey_cost cost = {0.0, 0.0, 0.0};
+    for (int b = 0; b < job->n_bodies; b++) {
+        struct solid_mesh own;
+        if (job->bodies[b].model != JOB_MODEL_SOLID)
+            continue;
+        const struct solid_mesh *mesh = solid_mesh_borrow(&job->bodies[b], &own);
+        for (int e = 0; e < mesh->n_elements; e++)
+            cost.seconds += solid_mesh_n_corners(mesh->elements[e]) == 8
+                                ? SECONDS_A_HEXAHEDRON
+                                : SECONDS_A_TETRAHEDRON;
+        cost.n_elements += mesh->n_elements;
+        cost.bytes +=
+            (double)mesh->n_elements * BYTES_AN_ELEMENT + (double)mesh->n_nodes * BYTES_A_NODE;
+        solid_mesh_clear(&own);
+    }
+    return cost;
 }
 
 /* Limits beyond which no usual material lies: probably other units. */
@@ -375,31 +397,30 @@ void solid_survey_warn(const struct job *job, int b)
 {
     static const double JACOBIAN = 0.1, ASPECT = 20.0;
     const struct job_body *body = &job->bodies[b];
-    struct solid_mesh mesh;
+    struct solid_mesh own;
     char name[TEXT];
-    solid_mesh_build(&mesh, body);
-    const struct solid_quality q = solid_quality_of(&mesh);
-    const double step = step_of(job, body, q.width);
+    const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
+    const struct solid_quality q = solid_quality_of(mesh);
+    const struct solid_step alone = solid_step_alone(job, b);
     warn_of_material(job, body);
     warn_of_layers(body);
     warn_of_flow(job, body);
-    if (job->time.step > step)
+    if (job->time.step > alone.step)
         report_warn("body '%s': time.step is %.3g of the critical step of %s; it would be "
                     "unstable",
-                    body->name, job->time.step / step,
-                    element_name(&mesh, q.width_worst, name));
+                    body->name, job->time.step / alone.step,
+                    element_name(mesh, alone.element, name));
     if (q.jacobian_least < JACOBIAN)
         report_warn(
             "body '%s': %s is nearly folded or flat, its scaled Jacobian is %.2g; above "
             "%.1f is better",
-            body->name, element_name(&mesh, q.jacobian_worst, name), q.jacobian_least,
-            JACOBIAN);
+            body->name, element_name(mesh, q.jacobian_worst, name), q.jacobian_least, JACOBIAN);
     if (q.aspect > ASPECT)
         report_warn(
             "body '%s': the edges of %s differ by a factor of %.3g; below %.0f is better",
-            body->name, element_name(&mesh, q.aspect_worst, name), q.aspect, ASPECT);
+            body->name, element_name(mesh, q.aspect_worst, name), q.aspect, ASPECT);
     if (q.n_parts > 1)
         report_warn("body '%s': its mesh falls into %d parts that have no node in common",
                     body->name, q.n_parts);
-    solid_mesh_clear(&mesh);
+    solid_mesh_clear(&own);
 }

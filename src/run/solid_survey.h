@@ -1,20 +1,30 @@
 /*
  * What can be known of deformable bodies before a run: mistakes in their meshes and in what is
- * prescribed on them, how good the meshes are, what they allow of the step.
+ * prescribed on them, how good the meshes are, what they allow of the step (run/solid_step.h).
  */
 #ifndef TREMIE_RUN_SOLID_SURVEY_H
 #define TREMIE_RUN_SOLID_SURVEY_H
 
+struct bodies;
 struct job;
+struct limits_spheres;
+struct materials;
 struct mistakes;
 
-/* Lists what is wrong with meshes, sets and boundaries; files have been read.  Local. */
-void solid_survey_check(const struct job *job, struct mistakes *mistakes);
-/* About the largest step that the elements of all solids bear, without contacts; infinite
- * without any [s].  Local. */
-double solid_survey_step(const struct job *job);
+/* Builds the meshes, to be kept with the job, and lists what is wrong with them, sets and
+ * boundaries; files have been read.  Local. */
+void solid_survey_check(struct job *job, struct mistakes *mistakes);
 /* A few lines for body b, which is a solid.  Local. */
-void solid_survey_print(const struct job *job, int b);
+void solid_survey_print(const struct job *job, const struct bodies *bodies,
+                        const struct materials *materials, const struct limits_spheres *spheres,
+                        int b);
+/* What all solids of a job cost. */
+struct solid_survey_cost {
+    double n_elements;
+    double seconds; /* a step, on one rank, without contacts [s] */
+    double bytes;   /* of each rank, which begins with all of them */
+};
+struct solid_survey_cost solid_survey_cost(const struct job *job);
 /* Warns of what is allowed and probably not meant: of its elements, its material, the step.
  * Local. */
 void solid_survey_warn(const struct job *job, int b);

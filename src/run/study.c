@@ -49,7 +49,7 @@ static int run_one(const struct comm *comm, const struct options *options,
     else if (status == REPORT_FINISHED)
         status = drive_run(comm, options, &job, text);
     report_log_close();
-    job_clear(&job);
+    intake_clear(&job);
     free(text);
     return status;
 }
@@ -156,7 +156,7 @@ static void check_variant(const struct options *options, const struct sweep *swe
     else if (print)
         report_say("variant %d: %s; not in order, in %s", variant, values, folder);
     findings_add(findings, &mistakes, variant);
-    job_clear(&job);
+    intake_clear(&job);
     free(values);
     free(folder);
     free(study);
@@ -252,7 +252,7 @@ static void print_mistakes(const struct options *options, int n_ranks,
     findings_add(&findings, &mistakes, 0);
     findings_print(&findings, 1);
     findings_clear(&findings);
-    job_clear(&job);
+    intake_clear(&job);
 }
 
 /* Do the options go with the sweep?  Says why not. */

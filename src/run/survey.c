@@ -12,6 +12,7 @@
 #include "model/geometry.h"
 #include "model/rigid.h"
 #include "model/sphere.h"
+#include "run/rigidity.h"
 #include "run/solid_survey.h"
 
 /* A drawing wider than this many radii is probably in other units; or one that is wider than
@@ -77,7 +78,8 @@ static void print_forced(const struct body *body)
                    rigid->mass, rigid->centre.x, rigid->centre.y, rigid->centre.z);
 }
 
-static void print_body(const struct job *job, const struct body *body)
+static void print_body(const struct job *job, const struct body *body,
+                       const struct materials *materials, const struct limits_spheres *spheres)
 {
     const struct mesh *mesh = &body->mesh;
     const struct mesh_survey survey = mesh_survey(mesh);
@@ -99,15 +101,17 @@ static void print_body(const struct job *job, const struct body *body)
     else
         report_say("          area %.4g m2, %s", survey.area,
                    survey.closed ? "closed, facets look both ways" : "open");
+    rigidity_print(job, body, &survey, materials, spheres);
 }
 
-void survey_print(const struct job *job, const struct bodies *bodies)
+void survey_print(const struct job *job, const struct bodies *bodies,
+                  const struct materials *materials, const struct limits_spheres *spheres)
 {
     for (int b = 0; b < bodies->n; b++)
         if (job->bodies[b].model == JOB_MODEL_SOLID)
-            solid_survey_print(job, b);
+            solid_survey_print(job, bodies, materials, spheres, b);
         else
-            print_body(job, &bodies->list[b]);
+            print_body(job, &bodies->list[b], materials, spheres);
 }
 
 /* The middle of an edge, in words. */

@@ -1,11 +1,8 @@
 /* See solid_side.h. */
 #include "solid/solid_side.h"
 
+#include "model/solid_mesh.h"
 #include "solid/solid.h"
-
-static const int HEXAHEDRON[6][4] = {{0, 3, 2, 1}, {4, 5, 6, 7}, {0, 1, 5, 4},
-                                     {1, 2, 6, 5}, {2, 3, 7, 6}, {3, 0, 4, 7}};
-static const int TETRAHEDRON[4][3] = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
 
 /* The face as it is, or from the other side. */
 static int shell_nodes(const struct solid *solid, int element, int side,
@@ -22,15 +19,12 @@ static int shell_nodes(const struct solid *solid, int element, int side,
 int solid_side_nodes(const struct solid *solid, int element, int side,
                      int nodes[SOLID_SIDE_NODES])
 {
-    const bool hexahedron = solid->shape[element] == SOLID_ELEMENT_HEXAHEDRON;
     if (shell_element_is(solid->shape[element]))
         return shell_nodes(solid, element, side, nodes);
-    if (side < 0 || side >= (hexahedron ? 6 : 4))
-        return 0;
-    const int n = hexahedron ? 4 : 3;
+    const int n =
+        solid_mesh_side_corners(solid_element_corners(solid->shape[element]), side, nodes);
     for (int c = 0; c < n; c++)
-        nodes[c] =
-            solid->corners[element][hexahedron ? HEXAHEDRON[side][c] : TETRAHEDRON[side][c]];
+        nodes[c] = solid->corners[element][nodes[c]];
     return n;
 }
 

@@ -13,6 +13,7 @@
 #include "base/comm.h"
 #include "base/report.h"
 #include "job/job.h"
+#include "model/solid_mesh.h"
 #include "run/check.h"
 #include "run/simulation.h"
 #include "run/step.h"
@@ -129,6 +130,7 @@ double verify_automatic_step(const char *yaml)
     struct job job;
     read_job(&job, text, true);
     const double step = job.time.step;
+    solid_mesh_release(&job);
     job_clear(&job);
     free(text);
     return step;

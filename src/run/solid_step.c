@@ -1,0 +1,346 @@
+/*
+ * See solid_step.h.  Springs of a node add up, and the bound of an element takes the worst of
+ * its corners, as in a run (solid/solid_limits.h, run/node_springs.h).  All springs are taken
+ * to act at once, so a run usually bears more than this; elements that become narrower bear
+ * less.
+ */
+#include "run/solid_step.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+#include "base/array.h"
+#include "job/job.h"
+#include "model/body.h"
+#include "model/material.h"
+#include "model/restitution.h"
+#include "model/solid_ball.h"
+#include "model/solid_mesh.h"
+#include "physics/critical_step.h"
+#include "physics/solid_element.h"
+#include "run/limits.h"
+
+/* A solid, and of each of its nodes what contacts do to it. */
+struct ground {
+    const struct job *job;
+    const struct job_body *body;
+    const struct solid_mesh *mesh;
+    struct solid_mesh own; /* of the mesh, where none is kept */
+    struct solid_element_material material;
+    double *mass;                /* [kg] */
+    double *stiffness, *damping; /* [N/m], [kg/s]; NULL: without contacts */
+};
+
+/* ------------------------------------------------------------------------------- elements */
+
+static struct solid_element_material material_of(const struct job *job,
+                                                 const struct job_body *body)
+{
+    const struct job_material *from = &job->materials[body->material];
+    const bool stiff = body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS;
+    const double held = body->solid.hourglass.coefficient;
+    struct solid_element_material material = {.density = from->density,
+                                              .damping = body->solid.damping.stiffness,
+                                              .hourglass_stiffness = stiff ? held : 0.0,
+                                              .hourglass_viscosity = stiff ? 0.0 : held};
+    solid_element_elastic(&material, from->young, from->poisson);
+    return material;
+}
+
+/* An element's shape, and its corners' places. */
+static enum solid_element_shape places_of(const struct solid_mesh *mesh, int e,
+                                          double x[SOLID_ELEMENT_CORNERS][3])
+{
+    const int n = solid_mesh_n_corners(mesh->elements[e]);
+    for (int c = 0; c < n; c++) {
+        const struct vec3 at = mesh->nodes[mesh->elements[e][c]];
+        x[c][0] = at.x;
+        x[c][1] = at.y;
+        x[c][2] = at.z;
+    }
+    return n == 8 ? SOLID_ELEMENT_HEXAHEDRON : SOLID_ELEMENT_TETRAHEDRON;
+}
+
+static double mass_of(const struct ground *ground, int e)
+{
+    double x[SOLID_ELEMENT_CORNERS][3];
+    const enum solid_element_shape shape = places_of(ground->mesh, e, x);
+    return ground->material.density * solid_element_volume(shape, x);
+}
+
+static void ground_init(struct ground *ground, const struct job *job, int b)
+{
+    *ground = (struct ground){.job = job, .body = &job->bodies[b]};
+    ground->mesh = solid_mesh_borrow(ground->body, &ground->own);
+    ground->material = material_of(job, ground->body);
+    ground->mass = array_allocate((size_t)ground->mesh->n_nodes, sizeof *ground->mass);
+    for (int e = 0; e < ground->mesh->n_elements; e++) {
+        const int *corners = ground->mesh->elements[e], n = solid_mesh_n_corners(corners);
+        const double share = mass_of(ground, e) / n;
+        for (int c = 0; c < n; c++)
+            ground->mass[corners[c]] += share;
+    }
+}
+
+static void ground_clear(struct ground *ground)
+{
+    free(ground->mass);
+    free(ground->stiffness);
+    free(ground->damping);
+    solid_mesh_clear(&ground->own);
+}
+
+/* The corner of an element where this is largest beside the mass, and how large it is there. */
+static int worst_corner(const struct ground *ground, int e, const double *of_node, double *most)
+{
+    const int *corners = ground->mesh->elements[e];
+    int worst = -1;
+    *most = 0.0;
+    for (int c = 0; of_node != NULL && c < solid_mesh_n_corners(corners); c++) {
+        const double share = of_node[corners[c]] / ground->mass[corners[c]];
+        if (share > *most) {
+            *most = share;
+            worst = corners[c];
+        }
+    }
+    return worst;
+}
+
+/* The element that allows least, as solid_limits_find() in a run. */
+static struct solid_step find_least(const struct ground *ground)
+{
+    struct solid_step least = {.step = (double)INFINITY, .element = -1, .node = -1};
+    for (int e = 0; e < ground->mesh->n_elements; e++) {
+        double x[SOLID_ELEMENT_CORNERS][3], stiffness, damping;
+        const enum solid_element_shape shape = places_of(ground->mesh, e, x);
+        const struct solid_element_load load =
+            solid_element_load(shape, x, mass_of(ground, e), &ground->material);
+        const int node = worst_corner(ground, e, ground->stiffness, &stiffness);
+        (void)worst_corner(ground, e, ground->damping, &damping);
+        const double step = solid_element_critical_step(&load, stiffness, damping);
+        if (step < least.step)
+            least = (struct solid_step){.step = step, .element = e, .node = node};
+    }
+    return least;
+}
+
+struct solid_step solid_step_alone(const struct job *job, int b)
+{
+    struct ground ground;
+    ground_init(&ground, job, b);
+    const struct solid_step least = find_least(&ground);
+    ground_clear(&ground);
+    return least;
+}
+
+/* ------------------------------------------------------------------------------- contacts */
+
+/* Springs and dashpots of nodes of the surface. */
+struct surface {
+    int n;
+    int *nodes;
+    struct solid_ball *balls; /* of these, with the area that each stands for */
+};
+
+static void surface_init(struct surface *surface, const struct ground *ground,
+                         const struct mesh *skin)
+{
+    int(*facets)[4];
+    (void)solid_mesh_skin(ground->mesh, &surface->n, &surface->nodes, &facets);
+    surface->balls = solid_balls(ground->mesh, skin, surface->nodes);
+    free(facets);
+}
+
+static void surface_clear(struct surface *surface)
+{
+    free(surface->nodes);
+    free(surface->balls);
+}
+
+/* A contact as nodes feel it. */
+struct felt {
+    double stiffness, damping; /* [N/m], [kg/s] */
+};
+
+static struct felt felt_of(const struct material_pair *pair, double width, double mass)
+{
+    const struct critical_step_contact contact = critical_step_contact(pair, width, mass);
+    const double *k = contact.stiffness, *d = contact.damping;
+    return (struct felt){k[0] > k[1] ? k[0] : k[1], d[0] > d[1] ? d[0] : d[1]};
+}
+
+static void push(const struct ground *ground, int node, double part, struct felt felt)
+{
+    ground->stiffness[node] += part * felt.stiffness;
+    ground->damping[node] += part * felt.damping;
+}
+
+/* The spring of a ball between such materials, of a width of 1 m; none where they do not
+ * touch.  (12.19) */
+static struct material_pair spring_between(const struct job *job, int a, int b)
+{
+    const double p = job->materials[a].young, q = job->materials[b].young;
+    const double lesser = p < q ? p : q;
+    for (int k = 0; k < job->n_pairs; k++) {
+        const struct job_pair *asked = &job->pairs[k];
+        if ((asked->a == a && asked->b == b) || (asked->a == b && asked->b == a))
+            return (struct material_pair){
+                .linear = 1.0,
+                .normal = lesser,
+                .tangential = asked->tangential_ratio * lesser,
+                .damping = 2.0 * restitution_damping(asked->restitution) * sqrt(lesser),
+                .damping_ratio = sqrt(asked->tangential_ratio),
+                .friction = asked->friction,
+            };
+    }
+    return (struct material_pair){.linear = 1.0};
+}
+
+static bool touches_bodies(const struct job_body *body)
+{
+    return body->model == JOB_MODEL_SOLID && body->solid.touches.what != JOB_TOUCHES_SPHERES;
+}
+
+/* Does a ball of body `from` meet faces of body `to`? */
+static bool meets(const struct job *job, int from, int to)
+{
+    const struct job_body *body = &job->bodies[from];
+    if (!touches_bodies(body))
+        return false;
+    return from != to || body->solid.touches.what == JOB_TOUCHES_ITSELF;
+}
+
+/* What one ball of body `from` does, of this width, in the stiffest contact with body `to`. */
+static void harden(const struct ground *ground, int from, int to, double width, double mass,
+                   struct felt *most)
+{
+    const struct job *job = ground->job;
+    const struct material_pair pair =
+        spring_between(job, job->bodies[from].material, job->bodies[to].material);
+    const struct felt felt = felt_of(&pair, width, mass);
+    most->stiffness = felt.stiffness > most->stiffness ? felt.stiffness : most->stiffness;
+    most->damping = felt.damping > most->damping ? felt.damping : most->damping;
+}
+
+/* The body's own balls, each pressed against the stiffest other body. */
+static void add_own_balls(const struct ground *ground, const struct surface *surface, int b)
+{
+    const struct job *job = ground->job;
+    const double s = ground->body->solid.touches.stiffness;
+    for (int v = 0; v < surface->n; v++) {
+        const struct solid_ball *ball = &surface->balls[v];
+        const double near = 1.0 - ball->part;
+        struct felt most = {0.0, 0.0};
+        if (ball->inner < 0)
+            continue;
+        const double inverse_mass = near * near / ground->mass[ball->outer] +
+                                    ball->part * ball->part / ground->mass[ball->inner];
+        for (int to = 0; to < job->n_bodies; to++)
+            if (meets(job, b, to))
+                harden(ground, b, to, s * sqrt(ball->area), 1.0 / inverse_mass, &most);
+        push(ground, ball->outer, near, most);
+        push(ground, ball->inner, ball->part, most);
+    }
+}
+
+/* Others' balls on the body's faces: as many of mean size as find room on what a node stands
+ * for, or one. */
+static void add_others_balls(const struct ground *ground, const struct surface *surface,
+                             const struct bodies *bodies, int b)
+{
+    const struct job *job = ground->job;
+    struct felt *most = array_allocate((size_t)surface->n, sizeof *most);
+    for (int from = 0; from < job->n_bodies; from++) {
+        if (!meets(job, from, b))
+            continue;
+        const struct mesh *mesh = &bodies->list[from].mesh;
+        const double area = mesh_survey(mesh).area / mesh->n_corners;
+        const double width = job->bodies[from].solid.touches.stiffness * sqrt(area);
+        for (int v = 0; v < surface->n; v++) {
+            const double room = surface->balls[v].area / area;
+            harden(ground, from, b, room > 1.0 ? room * width : width,
+                   ground->mass[surface->nodes[v]], &most[v]);
+        }
+    }
+    for (int v = 0; v < surface->n; v++)
+        push(ground, surface->nodes[v], 1.0, most[v]);
+    free(most);
+}
+
+/* Spheres of this size on a node of the surface: one that strikes, and as many as find room
+ * that rest. */
+static struct felt felt_of_spheres(const struct material_pair *pair,
+                                   const struct limits_strike *strike, double radius,
+                                   double area, double mass)
+{
+    const double both = mass * strike->mass / (mass + strike->mass);
+    const double room = area / (4.0 * radius * radius);
+    const struct felt struck = felt_of(pair, strike->struck, both);
+    const struct felt pressed = felt_of(pair, strike->pressed, both);
+    return (struct felt){struck.stiffness + room * pressed.stiffness,
+                         struck.damping + room * pressed.damping};
+}
+
+static void add_spheres(const struct ground *ground, const struct surface *surface,
+                        const struct materials *materials, const struct limits_spheres *spheres)
+{
+    struct felt *most = array_allocate((size_t)surface->n, sizeof *most);
+    for (int m = 0; m < 2 * spheres->n_materials; m++) {
+        const struct limits_sizes *sizes = &spheres->sizes[m / 2];
+        const double radius = m % 2 == 0 ? sizes->least : sizes->most;
+        const struct material_pair *pair =
+            &materials->pairs[m / 2 * materials->n + ground->body->material];
+        if (!(radius > 0.0 && pair->normal > 0.0))
+            continue;
+        const struct limits_strike strike =
+            limits_strike(spheres, ground->job, pair, m / 2, radius);
+        for (int v = 0; v < surface->n; v++) {
+            const struct felt felt = felt_of_spheres(
+                pair, &strike, radius, surface->balls[v].area, ground->mass[surface->nodes[v]]);
+            if (felt.stiffness > most[v].stiffness)
+                most[v] = felt;
+        }
+    }
+    for (int v = 0; v < surface->n; v++)
+        push(ground, surface->nodes[v], 1.0, most[v]);
+    free(most);
+}
+
+struct solid_step solid_step_with_contacts(const struct job *job, const struct bodies *bodies,
+                                           const struct materials *materials,
+                                           const struct limits_spheres *spheres, int b)
+{
+    struct ground ground;
+    struct surface surface;
+    bool of_spheres = false, of_bodies = false;
+    ground_init(&ground, job, b);
+    surface_init(&surface, &ground, &bodies->list[b].mesh);
+    ground.stiffness = array_allocate((size_t)ground.mesh->n_nodes, sizeof *ground.stiffness);
+    ground.damping = array_allocate((size_t)ground.mesh->n_nodes, sizeof *ground.damping);
+    add_own_balls(&ground, &surface, b);
+    add_others_balls(&ground, &surface, bodies, b);
+    add_spheres(&ground, &surface, materials, spheres);
+    struct solid_step least = find_least(&ground);
+    for (int k = 0; k < job->n_bodies; k++)
+        of_bodies = of_bodies || meets(job, b, k) || meets(job, k, b);
+    for (int m = 0; m < spheres->n_materials; m++)
+        of_spheres = of_spheres || spheres->sizes[m].most > 0.0;
+    least.of_bodies = of_bodies;
+    least.of_spheres = of_spheres;
+    surface_clear(&surface);
+    ground_clear(&ground);
+    return least;
+}
+
+double solid_step_least(const struct job *job, const struct bodies *bodies,
+                        const struct materials *materials, const struct limits_spheres *spheres)
+{
+    double least = (double)INFINITY;
+    for (int b = 0; b < job->n_bodies; b++) {
+        if (job->bodies[b].model != JOB_MODEL_SOLID)
+            continue;
+        const double step = solid_step_with_contacts(job, bodies, materials, spheres, b).step;
+        least = step < least ? step : least;
+    }
+    return least;
+}

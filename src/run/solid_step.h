@@ -1,0 +1,39 @@
+/*
+ * What solids allow of the time step, known before a run: their elements alone by the bounds
+ * that the watch goes by, (12.11) to (12.13), and with the contacts that may be expected on
+ * their nodes.
+ *
+ * Contacts are not there yet.  On each node of the surface are taken: what its own ball and
+ * those of other solids can do, where `touches` lets them; of spheres one that strikes as fast
+ * as can be foreseen, and as many as find room on what the node stands for, each pressed by
+ * what may rest on it.  What does happen is watched in the run (run/watch.h).
+ */
+#ifndef TREMIE_RUN_SOLID_STEP_H
+#define TREMIE_RUN_SOLID_STEP_H
+
+#include <stdbool.h>
+
+struct bodies;
+struct job;
+struct limits_spheres;
+struct materials;
+
+struct solid_step {
+    double step; /* stable up to this [s] */
+    int element; /* of the body's mesh, that allows no more */
+    int node;    /* its corner with the stiffest contacts; -1: none are expected */
+    bool of_spheres, of_bodies; /* contacts of which it was asked */
+};
+
+/* Of the elements of body b, which is a solid, without contacts.  Local. */
+struct solid_step solid_step_alone(const struct job *job, int b);
+/* With those that may be expected.  Local. */
+struct solid_step solid_step_with_contacts(const struct job *job, const struct bodies *bodies,
+                                           const struct materials *materials,
+                                           const struct limits_spheres *spheres, int b);
+/* The least of these, of all solids; infinite without any [s].  Local. */
+double solid_step_least(const struct job *job, const struct bodies *bodies,
+                        const struct materials *materials,
+                        const struct limits_spheres *spheres);
+
+#endif
