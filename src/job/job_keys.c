@@ -783,8 +783,9 @@ static const struct schema_key touches_keys[] = {
      "at the start",
      .standard = "spheres", .choices = touched, AT(struct job_body, solid.touches.what)},
     {"stiffness", SCHEMA_NUMBER,
-     "of a node's spring, over the lesser of the two moduli times the root of the node's share "
-     "of the surface; what is more than some 0.5 lowers the critical step",
+     "of a node's spring, over the lesser of the two moduli times the node's share of the "
+     "surface over the depth of its elements; what is more than some 0.5 lowers the critical "
+     "step",
      .unit = "1", .standard = "0.5", BETWEEN(0.001, 1000.0),
      AT(struct job_body, solid.touches.stiffness)},
     END};

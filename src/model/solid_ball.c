@@ -114,7 +114,8 @@ static void place_ball(const struct solid_mesh *mesh, const struct mesh *skin,
     ball->n_inner = found.n;
     for (int k = 0; k < found.n; k++)
         ball->inner[k] = found.nodes[k];
-    ball->radius = PART * (found.depth < shortest ? found.depth : shortest);
+    ball->depth = found.depth < shortest ? found.depth : shortest;
+    ball->radius = PART * ball->depth;
     ball->part = ball->radius / found.depth;
 }
 

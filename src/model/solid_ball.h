@@ -20,6 +20,7 @@ struct solid_ball {
     int n_inner;                 /* 0: there is no room for a ball here */
     int inner[SOLID_BALL_INNER]; /* one node, or those of an element: their mean counts */
     double part;   /* of the inner ones in where the ball is; the outer one has the rest */
+    double depth;  /* of these below the faces, or the way to the nearest node if less [m] */
     double radius; /* [m] */
     double area;   /* of the surface that the vertex stands for [m2] */
 };

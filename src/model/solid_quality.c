@@ -292,9 +292,10 @@ static void find_folded(struct finder *finder)
                  element_name(finder, e, name));
     end_kind(finder, "elements with a node twice");
     for (int e = 0; e < mesh->n_elements; e++) {
-        double largest;
+        double largest, aspect;
         const double volume = measure(mesh, e, &largest);
         const double span = largest * sqrt(largest);
+        const double corner = jacobian_of(mesh, e, &aspect);
         if (!(volume > FLAT * span) && !has_node_twice(mesh->elements[e]))
             find(finder,
                  volume < -FLAT * span ? "%s is flipped, its volume is %.3g m3; nodes "
@@ -302,8 +303,13 @@ static void find_folded(struct finder *finder)
                                        : "%s is flat, its volume is %.3g m3; one above "
                                          "0 is expected",
                  element_name(finder, e, name), volume);
+        else if (!(corner > 0.0) && !has_node_twice(mesh->elements[e]))
+            find(
+                finder,
+                "%s is folded, at a corner its scaled Jacobian is %.2g; one above 0 is expected",
+                element_name(finder, e, name), corner);
     }
-    end_kind(finder, "elements that are flipped or flat");
+    end_kind(finder, "elements that are flipped, flat or folded");
 }
 
 /* An element by its nodes in order. */

@@ -300,7 +300,7 @@ struct deform_sizes deform_sizes(const struct deform *deform)
 
 /* What hourglass modes may hold of a body's energy, motion and all, whatever else it holds: a
  * first touch loads single nodes. */
-static const double LITTLE = 0.01;
+static const double LITTLE = 0.02;
 
 /* Has a body too much energy in hourglass modes?  The rank with the worst element names it. */
 static bool is_hourglass(struct simulation *sim, const struct deform_body *deform,

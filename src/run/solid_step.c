@@ -229,17 +229,19 @@ static void add_own_balls(const struct ground *ground, const struct surface *sur
     const double s = ground->body->solid.touches.stiffness;
     for (int v = 0; v < surface->n; v++) {
         const struct solid_ball *ball = &surface->balls[v];
-        const double near = 1.0 - ball->part;
         struct felt most = {0.0, 0.0};
-        if (ball->inner < 0)
+        if (ball->n_inner == 0)
             continue;
-        const double inverse_mass = near * near / ground->mass[ball->outer] +
-                                    ball->part * ball->part / ground->mass[ball->inner];
+        const double near = 1.0 - ball->part, far = ball->part / ball->n_inner;
+        double inverse_mass = near * near / ground->mass[ball->outer];
+        for (int k = 0; k < ball->n_inner; k++)
+            inverse_mass += far * far / ground->mass[ball->inner[k]];
         for (int to = 0; to < job->n_bodies; to++)
             if (meets(job, b, to))
-                harden(ground, b, to, s * sqrt(ball->area), 1.0 / inverse_mass, &most);
+                harden(ground, b, to, s * ball->area / ball->depth, 1.0 / inverse_mass, &most);
         push(ground, ball->outer, near, most);
-        push(ground, ball->inner, ball->part, most);
+        for (int k = 0; k < ball->n_inner; k++)
+            push(ground, ball->inner[k], far, most);
     }
 }
 

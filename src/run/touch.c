@@ -282,7 +282,7 @@ static void list_balls(struct simulation *sim)
         touch->owned[n] = ball;
         touch->place[ball] = n;
         touch->width[n] =
-            sim->job->bodies[deform->body].solid.touches.stiffness * sqrt(at->area);
+            sim->job->bodies[deform->body].solid.touches.stiffness * at->area / at->depth;
         spheres->id[n] = ball;
         spheres->material[n] = sim->bodies.list[deform->body].material;
         spheres->motion[n] =
@@ -389,29 +389,34 @@ static void push_ball(struct simulation *sim, int i)
     }
 }
 
-/* A ball whose centre is through the surface would feel it no more. */
-static const double THROUGH = 0.9;
+/* A ball whose centre is through the surface would feel it no more; and at the start bodies may
+ * be in each other only by what rounding and coarse curves make of it.  In radii. */
+static const double THROUGH = 0.9, AT_START = 0.2;
 
 static void watch_depth(struct simulation *sim)
 {
     const struct touch *touch = &sim->touch;
-    if (!(touch->contacts.overlap_max > THROUGH) || sim->deform.failed)
+    const double most = sim->step == 0 ? AT_START : THROUGH;
+    if (!(touch->contacts.overlap_max > most) || sim->deform.failed)
         return;
     for (int k = 0; k < touch->contacts.n; k++) {
         const struct facet_contact *contact = &touch->contacts.list[k];
         const int i = contact->sphere;
-        if (!(contact->overlap > THROUGH * sphere_radius(&touch->spheres, i)))
+        if (!(contact->overlap > most * sphere_radius(&touch->spheres, i)))
             continue;
         const struct where where = find_ball(&sim->deform, touch->owned[i]);
         const struct deform_body *deform = &sim->deform.list[where.deform];
         const double *at = solid_place(&deform->solid, deform->balls[where.vertex].outer);
         sim->deform.failed = true;
-        snprintf(sim->watch.what, sizeof sim->watch.what,
-                 "node %d of body '%.48s' at (%.5g, %.5g, %.5g) m is pressed %.3g m into body "
-                 "'%.48s'; its contact reaches %.3g m",
-                 deform->balls[where.vertex].outer + 1, sim->bodies.list[deform->body].name,
-                 at[0], at[1], at[2], contact->overlap, sim->bodies.list[contact->body].name,
-                 sphere_radius(&touch->spheres, i));
+        char reach[48] = "at the start; move them apart";
+        if (sim->step > 0)
+            snprintf(reach, sizeof reach, "its contact reaches %.3g m",
+                     sphere_radius(&touch->spheres, i));
+        snprintf(
+            sim->watch.what, sizeof sim->watch.what,
+            "node %d of body '%.40s' at (%.5g, %.5g, %.5g) m is %.3g m in body '%.40s'; %s",
+            deform->balls[where.vertex].outer + 1, sim->bodies.list[deform->body].name, at[0],
+            at[1], at[2], contact->overlap, sim->bodies.list[contact->body].name, reach);
         return;
     }
 }

@@ -49,4 +49,5 @@ compare mixed mixed
 compare "mixed without ledger" mixed --set contact.ledger=false
 compare machines machines
 compare solids deform
+compare "bodies that touch" slide
 compare periodic periodic

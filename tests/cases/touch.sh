@@ -38,6 +38,8 @@ alike()
         run "$n" "$scene-$n" "$scene"
         same_run "$scene" "$scene-$n"
     done
+    run 1 "$scene-v2" "$scene" --isa v2
+    same_run "$scene" "$scene-v2"
     run 2 "$scene-forced" "$scene" --set testing.search_every=7 --set testing.repartition_every=50
     same_run "$scene" "$scene-forced"
 }
@@ -76,6 +78,31 @@ balanced slide 1e-4 dissipated_friction_J
 result "blocks slide and stop"
 alike slide 3
 result "the same on 3 ranks"
+# With friction that never slides memory is all that holds: a run in two pieces must be the run.
+sticky=(--set contact.pairs.0.friction=10 --set contact.pairs.1.friction=10 --set time.step=10us --set time.end=0.04
+    --set checkpoint.every.steps=2000)
+run 1 sticky slide "${sticky[@]}"
+run 2 pieces slide "${sticky[@]}" --set time.end=0.02
+run 3 pieces slide "${sticky[@]}"
+says "resumes at step"
+same_run sticky pieces
+result "friction of 10, in two pieces on 2 and 3 ranks"
+
+# Tips of tetrahedra have nothing deeper in; they touch all the same.
+run 1 tip tip
+near "the depth of the corner" "$(columns tip '{ way = $at["tip.displacement_z_m"]
+    least = way < least ? way : least } END { print least }')" -0.0027 0.0004
+near "the speed after it" "$(columns tip 'END { print $at["all.velocity_z_m_s"] }')" 1 0.02
+balanced tip 1e-3 kinetic_translation_J
+result "the tip of a tetrahedron"
+
+# Bodies that are in each other at the start are named.
+status=0
+tremie 2 run "$scenes/bars.yaml" --out inside --set bodies.1.mesh.min.0=-0.5mm || status=$?
+[ "$status" = 3 ] || why+=" ends with status $status;"
+says "m in body"
+says "at the start; move them apart"
+result "bodies in each other"
 
 # A spring that is too stiff for its nodes is named, not left to blow up.
 status=0
@@ -94,5 +121,5 @@ result "a tube meets itself"
 tremie 2 run "$scenes/squeeze.yaml" --out deeper --set time.end=0.12
 [ $? = 3 ] || why+=" does not end with status 3;"
 says "of body 'tube'"
-says "m into body"
+says "its contact reaches"
 result "pressed too deep"
