@@ -26,17 +26,18 @@
 enum { SLICES_MOST = 100000, NOTHING_TO_REPORT = 1 };
 
 /* What is shown, in this order, where the snapshot has it. */
-enum { STRESSES = 6, MISES = STRESSES, PLASTIC, N_VALUES };
+enum { STRESSES = 6, MISES = STRESSES, PLASTIC, FLOWED, N_VALUES };
 
 static const struct {
     const char *name; /* of a column of the table */
     const char *heading, *unit;
     int component;
 } VALUES[N_VALUES] = {
-    {"stress", "stress_xx", "Pa", 0},    {"stress", "stress_yy", "Pa", 1},
-    {"stress", "stress_zz", "Pa", 2},    {"stress", "stress_xy", "Pa", 3},
-    {"stress", "stress_yz", "Pa", 4},    {"stress", "stress_zx", "Pa", 5},
-    {"von_mises", "von_mises", "Pa", 0}, {"plastic_strain", "plastic_strain", "1", 0},
+    {"stress", "stress_xx", "Pa", 0},     {"stress", "stress_yy", "Pa", 1},
+    {"stress", "stress_zz", "Pa", 2},     {"stress", "stress_xy", "Pa", 3},
+    {"stress", "stress_yz", "Pa", 4},     {"stress", "stress_zx", "Pa", 5},
+    {"von_mises", "von_mises", "Pa", 0},  {"plastic_strain", "plastic_strain", "1", 0},
+    {"plastic_strain", "flowed", "1", 0},
 };
 
 static const char *const sides[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max", NULL};
@@ -127,7 +128,8 @@ static void add_element(struct profile *profile, const struct snapshot_solid *so
             continue;
         snapshot_get(&solid->elements, e, snapshot_column(&solid->elements, VALUES[v].name),
                      numbers);
-        profile->values[v][slice] += volume * numbers[VALUES[v].component];
+        const double number = numbers[VALUES[v].component];
+        profile->values[v][slice] += volume * (v == FLOWED ? number > 0.0 : number);
     }
 }
 
@@ -371,8 +373,8 @@ int main(int argc, char **argv)
         "tremie-profile",
         "SNAPSHOT|RUN [--body NAME] [--from SIDE] [--slices N] [--csv FILE] [--svg FILE]",
         "Shows mean stress and plastic strain of a deformable body's elements in slices below one\n"
-        "of its sides, weighted by volume.  Depth is that at the start.  Of a run's folder the\n"
-        "newest snapshot is taken.\n"
+        "of its sides, and the share of them that has flowed, weighted by volume.  Depth is that\n"
+        "at the start.  Of a run's folder the newest snapshot is taken.\n"
         "\n"
         "Exit status: 0 shown; 1 nothing to show (no deformable body, no stress); 2 bad arguments;\n"
         "4 a file cannot be read or written.\n",

@@ -75,8 +75,7 @@ static double find_node(const struct solid_mesh *mesh, const struct mesh *skin,
             shortest2 = way2 < shortest2 ? way2 : shortest2;
             if (depth > found->depth + hair ||
                 (found->n > 0 && depth > found->depth - hair &&
-                 (way2 < found->way2 ||
-                  (way2 == found->way2 && corners[k] < found->nodes[0]))))
+                 (way2 < found->way2 || (way2 == found->way2 && corners[k] < found->nodes[0]))))
                 *found = (struct deepest){depth, way2, 1, {corners[k]}};
         }
     }

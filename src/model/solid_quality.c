@@ -303,7 +303,7 @@ static void find_folded(struct finder *finder)
                                        : "%s is flat, its volume is %.3g m3; one above "
                                          "0 is expected",
                  element_name(finder, e, name), volume);
-        else if (!(corner > 0.0) && !has_node_twice(mesh->elements[e]))
+        else if (!(corner > -FLAT) && !has_node_twice(mesh->elements[e]))
             find(
                 finder,
                 "%s is folded, at a corner its scaled Jacobian is %.2g; one above 0 is expected",

@@ -136,8 +136,8 @@ bool contact_patch_cut(const struct mesh *mesh, int face, struct vec3 centre, do
     if (is_whole) {
         circle.angle = 2.0 * PI;
     } else {
-        /* A circle that goes past a corner meets no side.  Angles about its middle then add up to
-         * nothing, but for rounding. */
+        /* A circle that goes past a corner meets no side.  Angles about its middle then add up
+         * to nothing, but for rounding. */
         bool meets = false;
         for (int k = 0; k < 3; k++)
             meets = add_side(&circle, &border[k], foot) || meets;

@@ -6,8 +6,8 @@ struct solid;
 
 enum { SOLID_SIDES = 6 /* at most */, SOLID_SIDE_NODES = 4 /* at most */ };
 
-/* Side `side` of an element, counted as model/solid_mesh.h does; of shells and membranes 0123 or
- * 012, and the same from behind. */
+/* Side `side` of an element, counted as model/solid_mesh.h does; of shells and membranes 0123
+ * or 012, and the same from behind. */
 struct solid_side {
     int element, side;
 };

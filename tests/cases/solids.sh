@@ -58,7 +58,7 @@ says "time.step = 3.2e-07 s is 1.02 of the critical step of body 'plate' with it
 result "a run goes by the same bound"
 
 # A cube of h = 0.1 m and c = 1000 m/s, nu = 0: 4 c^2/h^2 (12.11), with an eigenvalue from above. A sphere's linear spring of 1.5e8 N/m on one corner of
-# 1/8 of 1 kg adds 12, its own balls, (2/3 + 1/3) s E sqrt(3/4 h^2) a corner, 4 sqrt(3), in c^2/h^2.
+# 1/8 of 1 kg adds 12, its own balls, (2/3 + 1/3) s E 3/4 h a corner, 6, in c^2/h^2.
 cube()
 {
     timeout "$patience" "$bin/tremie" check "$scenes/cube.yaml" "$@" > said 2>&1 || why+=" is refused;"
@@ -67,7 +67,7 @@ cube
 says "critical step 9.999e-05 s without contacts"
 says "with contacts of spheres, most on node 1 of element 1 at (0.05, 0.05, 0.05) m: about 5e-05 s"
 cube --set "bodies.0.touches={what: bodies, stiffness: 1}"
-says "with contacts of spheres and bodies, most on node 1 of element 1 at (0.05, 0.05, 0.05) m: about 4.18e-05 s"
+says "with contacts of spheres and bodies, most on node 1 of element 1 at (0.05, 0.05, 0.05) m: about 4.26e-05 s"
 result "springs on nodes"
 # What strikes rigid bodies is m = 4.18879 kg at 1 m/s: F = v sqrt(k m) = 25066 N, v sqrt(m/k) = 1.6711e-4 m deep. A block
 # of 0.3 m x 0.3 m x 0.2 m and 1 GPa yields by F (0.3 m)^2 / E V = 1.2533e-4 m; a plate of 2 m x 2 m bends by as much as the
@@ -106,3 +106,19 @@ result "a density in t/mm3"
 checked --set bodies.3.mesh.scale=10 --set "bodies.3.mesh.move=[20, 0, 0]" --set spheres.0.radius=0.1mm
 says "warning: body 'column', column.msh: is 20 m wide, 2e+05 radii of the largest sphere; a file in mm takes scale: 0.001"
 result "a file in other units"
+
+# What fails is named with the element and its place, and the last checkpoint stays, which resumes.
+status=0
+crushed=(--set checkpoint.every.steps=100 --set "bodies.0.boundary=[{set: z_max, pressure_table: [{time: 0, pressure: 0}, {time: 1 ms, pressure: 0}, {time: 1.1 ms, pressure: 1 GPa}]}]")
+tremie 2 run "$scenes/dents.yaml" --out crushed "${crushed[@]}" || status=$?
+[ "$status" = 3 ] || why+=" ends with status $status;"
+says "of body 'one' at ("
+says "is turned inside out"
+[ -e crushed/checkpoints/step_000000000500.h5 ] || why+=" does not keep the checkpoint before;"
+result "an element inside out"
+status=0
+tremie 2 run "$scenes/dents.yaml" --out folded --set watch.hourglass=0.02 || status=$?
+[ "$status" = 3 ] || why+=" ends with status $status;"
+says "hourglass modes at step"
+says "most in element"
+result "energy in hourglass modes"

@@ -437,6 +437,10 @@ TEST(faults_are_found_and_told)
     mesh.nodes[13].z =
         2.0; /* the middle goes down: lower cells become flat in one corner alone */
     expect_fine(&mesh);
+    mesh.nodes[13].z = 1.8; /* and are folded there */
+    expect_fault(&mesh, 4,
+                 "body 'it': element 1 at (-0.5, 0.525, 2.069) m is folded, at a corner its "
+                 "scaled Jacobian is");
     mesh.nodes[13] = was;
     for (int k = 18; k < 27; k++)
         mesh.nodes[k].z = 2.25;
