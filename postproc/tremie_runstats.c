@@ -17,11 +17,11 @@
 #include "records.h"
 #include "sheet.h"
 
-enum { N_PHASES = 11, NAME_SIZE = 64, NOTHING_TO_REPORT = 1, RUNS_MOST = 1000 };
+enum { N_PHASES = 12, NAME_SIZE = 64, NOTHING_TO_REPORT = 1, RUNS_MOST = 1000 };
 
 static const char *const phases[N_PHASES] = {
-    "bodies", "facets",       "pairs",       "integrate", "halo",       "watch",
-    "search", "redistribute", "repartition", "sample",    "checkpoint",
+    "bodies", "facets", "pairs",        "integrate",   "solids", "halo",
+    "watch",  "search", "redistribute", "repartition", "sample", "checkpoint",
 };
 
 struct phase {

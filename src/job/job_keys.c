@@ -829,8 +829,8 @@ static const struct schema_key body_keys[] = {
      "a load, a drum on its bearings; in place of `motion`",
      .kinds = RIGID, .inside = driven_keys, GIVEN(struct job_body, driven.given)},
     {"free", SCHEMA_GROUP,
-     "moved in all directions by gravity and the spheres, in place of `motion`; it does not "
-     "feel other bodies",
+     "moved in all directions by gravity and the spheres, in place of `motion`; of other bodies "
+     "it feels those that deform and touch bodies",
      .kinds = RIGID, .inside = free_keys, GIVEN(struct job_body, free.given)},
     {"surface", SCHEMA_GROUP,
      "its surface runs, like a belt, while the body stays where it is or moves as prescribed: "

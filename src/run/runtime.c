@@ -10,8 +10,8 @@
 #include "domain/boxes.h"
 
 static const char *const PHASE_NAMES[RUNTIME_N_PHASES] = {
-    "bodies", "facets",       "pairs",       "integrate", "halo",       "watch",
-    "search", "redistribute", "repartition", "sample",    "checkpoint",
+    "bodies", "facets", "pairs",        "integrate",   "solids", "halo",
+    "watch",  "search", "redistribute", "repartition", "sample", "checkpoint",
 };
 
 enum { VALUES_MAX = 128, NANOSECONDS = 1000000000 };

@@ -17,6 +17,7 @@ enum runtime_phase {
     RUNTIME_FACETS,
     RUNTIME_PAIRS,
     RUNTIME_INTEGRATE,
+    RUNTIME_SOLIDS, /* their elements and nodes, and what ranks tell each other of them */
     RUNTIME_HALO,
     RUNTIME_WATCH,
     RUNTIME_SEARCH,

@@ -185,7 +185,9 @@ void step_forces(struct simulation *sim)
     local_damping_apply(sim);
     sim->balance.busy += timer_now() - began;
     forced_plan(sim);
+    runtime_end(runtime, RUNTIME_BODIES);
     deform_plan(sim);
+    runtime_end(runtime, RUNTIME_SOLIDS);
     observe(sim);
 }
 
@@ -197,8 +199,10 @@ void step(struct simulation *sim)
     step_forces(sim);
     integrate(sim, spent, &bad);
     forced_move(sim);
+    runtime_end(runtime, RUNTIME_INTEGRATE);
     touch_end(sim);
     deform_move(sim);
+    runtime_end(runtime, RUNTIME_SOLIDS);
     sim->step++;
     sections_pass(&sim->sections, &sim->spheres);
     removals_catch(&sim->removals, &sim->spheres, (double)sim->step * sim->dt, sim->dt);
