@@ -123,11 +123,12 @@ stability:
 	@$(MAKE) --no-print-directory all stability_cases
 	@BUILD='$(BUILD)' BIN='$(BIN)' FLAVOUR='$(FLAVOUR)' tests/stability/run
 
-##  make bench        measure speed: all cases of tests/bench, on one core and two (CASE=name: one case)
+##  make bench        measure speed: all cases of tests/bench, on one core and two, and elements (CASE=name: one case)
 bench:
 	@config/setup test
 	@$(MAKE) --no-print-directory all
 	@BIN='$(BIN)' tests/bench/run
+	@[ -n "$(CASE)" ] || $(MAKE) --no-print-directory bench-elements
 
 ##  make bench-peers  measure speed beside LIGGGHTS and LAMMPS (CASE=name ROUNDS=5 ISA=v3)
 bench-peers:
