@@ -339,8 +339,12 @@ TEST(elastic_energy_is_what_motion_lacks)
 /* Where surfaces do not touch, forces are zero and the history is +0, whatever it was. */
 TEST(apart_nothing_remains)
 {
-    const struct contact_law_meeting meeting = {
-        {0.6, 0.0, -0.8}, {-1.0, 2.0, 3.0}, 0.0, 200.0, 1000.0, {70.0, -80.0, 90.0}};
+    const struct contact_law_meeting meeting = {.normal = {0.6, 0.0, -0.8},
+                                                .velocity = {-1.0, 2.0, 3.0},
+                                                .inverse_radius = 200.0,
+                                                .width = 1.0,
+                                                .inverse_mass = 1000.0,
+                                                .spin = {70.0, -80.0, 90.0}};
     const struct impact impact = {glass, false, 0.01, 0.5, 0.5, 1, 0, 0, 1, 0};
     struct material_pair pair = pair_of(&impact);
     double history[CONTACT_LAW_LANES] = {-3.0, -2.0, 1.0, 1e-4, -1.0,
