@@ -63,6 +63,8 @@ static unsigned char *record(const struct table *table, int64_t i)
 void table_append(struct table *table, const void *records, int64_t n)
 {
     const size_t used = (size_t)table->n * table->record_size;
+    if (n == 0)
+        return;
     ARRAY_GROW(table->records, used + (size_t)n * table->record_size, table->capacity);
     memcpy(table->records + used, records, (size_t)n * table->record_size);
     table->n += n;
@@ -107,7 +109,8 @@ static void send_by_id(struct table *table, struct comm_mail *mail, const struct
 
 static void sort(struct table *table)
 {
-    qsort(table->records, (size_t)table->n, table->record_size, table->compare);
+    if (table->n > 1)
+        qsort(table->records, (size_t)table->n, table->record_size, table->compare);
     for (int64_t i = 1; i < table->n; i++)
         CHECK(table->compare(record(table, i - 1), record(table, i)) < 0,
               "%s: id %lld is held twice", table->name, (long long)table_id(table, i));
@@ -254,7 +257,8 @@ static void write_part(struct table *table, const struct comm *comm, struct h5 *
     table->begin = before + begin;
     table->n = n;
     table_write(table, h5);
-    memmove(table->records, record(table, n), (size_t)kept * table->record_size);
+    if (kept > 0)
+        memmove(table->records, record(table, n), (size_t)kept * table->record_size);
     table->n = kept;
 }
 
