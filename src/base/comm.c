@@ -104,6 +104,25 @@ void comm_gather_parts(const struct comm *comm, void *all, const int *sizes)
     free(begin);
 }
 
+void *comm_gather_records(const struct comm *comm, const void *own, int n_own, size_t size,
+                          int *n)
+{
+    int *sizes = array_allocate((size_t)comm->n_ranks, sizeof *sizes), before = 0;
+    CHECK((size_t)n_own <= INT32_MAX / size, "%d records at once", n_own);
+    comm_gather_all(comm, &(int){n_own * (int)size}, sizes, sizeof *sizes);
+    *n = 0;
+    for (int q = 0; q < comm->n_ranks; q++) {
+        before = q == comm->rank ? *n : before;
+        *n += sizes[q] / (int)size;
+    }
+    unsigned char *all = array_allocate((size_t)*n, size);
+    if (n_own > 0)
+        memcpy(all + (size_t)before * size, own, (size_t)n_own * size);
+    comm_gather_parts(comm, all, sizes);
+    free(sizes);
+    return all;
+}
+
 void comm_barrier(const struct comm *comm)
 {
     COMM_CHECK(MPI_Barrier(comm->mpi));

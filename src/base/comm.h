@@ -43,6 +43,10 @@ void comm_gather_all(const struct comm *comm, const void *own, void *all, size_t
 /* Everybody's sizes[rank] bytes to everybody: `all` has room for them side by side in rank
  * order, and the own ones in their place; all ranks know the sizes.  Collective. */
 void comm_gather_parts(const struct comm *comm, void *all, const int *sizes);
+/* Everybody's n_own records of `size` bytes to everybody, in rank order: *n of them, which the
+ * caller frees.  Collective. */
+void *comm_gather_records(const struct comm *comm, const void *own, int n_own, size_t size,
+                          int *n);
 void comm_barrier(const struct comm *comm);
 
 /*

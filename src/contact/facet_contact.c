@@ -85,11 +85,6 @@ struct step {
     struct facet_kernel_work *kernel_work;
 };
 
-static bool holds_history(const struct facet_contact *contact)
-{
-    return contact->history[CONTACT_RADIUS_LANE] > 0.0;
-}
-
 static struct vec3 vec3_of(const double *lane)
 {
     return (struct vec3){lane[0], lane[1], lane[2]};
@@ -219,7 +214,7 @@ static void list_contact(struct facet_contacts *facets, struct facet_contact con
             break;
         if (order == 0)
             contact = *before;
-        else if (holds_history(before))
+        else if (facet_contact_touched(before))
             *n = append(facets->work, *n, before);
     }
     *n = append(facets->work, *n, &contact);
@@ -322,7 +317,7 @@ void facet_contacts_search(struct facet_contacts *facets, const struct spheres *
         }
     }
     for (; old < facets->n; old++)
-        if (holds_history(&facets->list[old]))
+        if (facet_contact_touched(&facets->list[old]))
             n = append(work, n, &facets->list[old]);
     exchange_lists(facets, n);
 }
@@ -334,7 +329,7 @@ static bool is_recorded(const struct facet_contacts *facets, int k,
                         const struct spheres *spheres, int64_t begin, int64_t end)
 {
     const int64_t id = spheres->id[facets->list[k].sphere];
-    return holds_history(&facets->list[k]) && id >= begin && id < end;
+    return facet_contact_touched(&facets->list[k]) && id >= begin && id < end;
 }
 
 int facet_contacts_records(const struct facet_contacts *facets, const struct spheres *spheres,
@@ -361,7 +356,7 @@ int facet_contacts_count(const struct facet_contacts *facets)
 {
     int n = 0;
     for (int k = 0; k < facets->n; k++)
-        n += holds_history(&facets->list[k]);
+        n += facet_contact_touched(&facets->list[k]);
     return n;
 }
 
@@ -612,7 +607,7 @@ static void end_group(const struct step *step, int begin, int end)
 {
     for (int k = begin; k < end; k++) {
         const struct facet_contact *contact = &step->facets->list[k];
-        if (!holds_history(contact))
+        if (!facet_contact_touched(contact))
             continue;
         const struct mesh *mesh = &step->bodies->list[contact->body].mesh;
         const struct contact_geometry at = contact_geometry_closest(
@@ -753,7 +748,7 @@ static void look_around(const struct step *step, struct group *group, struct vec
     group->slack = is_long ? NEAR_RADII * radius + NEAR_STEPS * step->kernel_work->dt * speed
                            : (double)INFINITY;
     for (int k = 0; k < n; k++)
-        if (!is_long || holds_history(&entries[k]) ||
+        if (!is_long || facet_contact_touched(&entries[k]) ||
             contact_geometry_reaches(&body->mesh, entries[k].feature, centre,
                                      radius + group->slack))
             work->near[group->begin + group->n_near++] = k;
@@ -834,7 +829,7 @@ static void gather_one(const struct step *step, int entry)
     struct contact_geometry at;
     if (contact_geometry_touches(mesh, contact->feature, centre, radius, &at)) {
         add_contact(step, entry, &at, radius - at.distance);
-    } else if (holds_history(contact)) {
+    } else if (facet_contact_touched(contact)) {
         at = contact_geometry_closest(mesh, contact->feature, centre);
         add_contact(step, entry, &at, 0.0);
     }
@@ -904,7 +899,7 @@ void facet_contacts_held(const struct facet_contacts *facets, const struct spher
         const struct facet_contact *contact = &facets->list[k];
         const struct body *body = &bodies->list[contact->body];
         const int material = spheres->material[contact->sphere];
-        if (!body->exists && holds_history(contact))
+        if (!body->exists && facet_contact_touched(contact))
             exact_sum_add(
                 sum, width_of(facets, contact->sphere) *
                          held_energy(
@@ -920,7 +915,7 @@ void facet_contacts_elastic_energy(const struct facet_contacts *facets,
 {
     for (int k = 0; k < facets->n; k++) {
         const struct facet_contact *contact = &facets->list[k];
-        if (!holds_history(contact))
+        if (!facet_contact_touched(contact))
             continue;
         const int i = contact->sphere, wall = bodies->list[contact->body].material;
         const struct material_pair *pair =

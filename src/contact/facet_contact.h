@@ -44,6 +44,12 @@ struct facet_contact {
     int feature; /* see model/mesh.h */
 };
 
+/* Did the two touch in the last step?  Then it remembers. */
+static inline bool facet_contact_touched(const struct facet_contact *contact)
+{
+    return contact->history[CONTACT_RADIUS_LANE] > 0.0;
+}
+
 /* By id: what migrates, is saved and compared (only touching ones). */
 struct facet_contact_record {
     int64_t id;

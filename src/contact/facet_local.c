@@ -40,11 +40,6 @@ static void reserve(struct facet_local *local, int n)
     local->capacity = (int)capacity;
 }
 
-static bool holds_history(const struct facet_contact *contact)
-{
-    return contact->history[CONTACT_RADIUS_LANE] > 0.0;
-}
-
 static void find_touches(struct facet_local *local, const struct facet_contact *group,
                          const int *near, int n, const struct mesh *mesh, struct vec3 centre,
                          double radius)
@@ -56,11 +51,11 @@ static void find_touches(struct facet_local *local, const struct facet_contact *
         if (contact_geometry_touches(mesh, group[k].feature, centre, radius, &touch->at)) {
             const double overlap = radius - touch->at.distance;
             touch->entry = k;
-            touch->claim = holds_history(&group[k]) ? HOLDS_ON * overlap : overlap;
+            touch->claim = facet_contact_touched(&group[k]) ? HOLDS_ON * overlap : overlap;
             touch->stands_in = -1;
             touch->acts_at = touch->at;
             local->n_touches++;
-        } else if (holds_history(&group[k])) {
+        } else if (facet_contact_touched(&group[k])) {
             local->ended[local->n_ended++] = k;
         }
     }
@@ -85,8 +80,8 @@ static void silence(struct facet_local *local, const struct facet_contact *group
 {
     const struct facet_local_touch *deepest = &local->touches[d];
     const struct vec3 apart = vec3_sub(other->at.point, deepest->at.point);
-    const bool stood_apart =
-        holds_history(&group[deepest->entry]) && holds_history(&group[other->entry]);
+    const bool stood_apart = facet_contact_touched(&group[deepest->entry]) &&
+                             facet_contact_touched(&group[other->entry]);
     const bool is_hidden = vec3_dot(deepest->at.normal, apart) <= IN_PLANE * radius;
     const bool is_near =
         vec3_dot(deepest->at.normal, other->at.normal) > SAME_NORMAL ||
@@ -123,7 +118,7 @@ static void choose_standing(struct facet_local *local, const struct facet_contac
     }
     for (int t = 0; t < local->n_touches; t++) {
         const struct facet_local_touch *touch = &local->touches[t];
-        if (!facet_local_stands(local, t) && holds_history(&group[touch->entry]))
+        if (!facet_local_stands(local, t) && facet_contact_touched(&group[touch->entry]))
             local->ended[local->n_ended++] = touch->entry;
     }
 }
@@ -215,7 +210,7 @@ static const struct facet_local_touch *heir_of(const struct facet_local *local,
         const struct facet_local_touch *touch = &local->touches[t];
         const double turn = vec3_dot(was->normal, touch->at.normal);
         if (!facet_local_stands(local, t) || !(turn > nearest) ||
-            holds_history(&group[touch->entry]))
+            facet_contact_touched(&group[touch->entry]))
             continue;
         if (turn > SAME_NORMAL || patches_overlap(was, overlap, &touch->at,
                                                   radius - touch->at.distance, radius, 1.0)) {

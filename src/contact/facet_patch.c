@@ -23,11 +23,6 @@ void facet_patch_clear(struct facet_patch *patch)
     *patch = (struct facet_patch){0};
 }
 
-static bool holds_history(const struct facet_contact *contact)
-{
-    return contact->history[CONTACT_RADIUS_LANE] > 0.0;
-}
-
 /* The part that a smooth part of the surface is; what is new ends the list. */
 static struct facet_patch_part *part_of(struct facet_patch *patch, int smooth)
 {
@@ -57,8 +52,8 @@ static double cut_faces(struct facet_patch *patch, const struct facet_contact *g
         const struct vec3 normal = body->mesh.face_normal[cut.face];
         part->area += cut.at.area;
         part->facing = vec3_axpy(part->facing, cut.at.area, normal);
-        if (part->entry < 0 ||
-            (holds_history(&group[cut.entry]) && !holds_history(&group[part->entry])))
+        if (part->entry < 0 || (facet_contact_touched(&group[cut.entry]) &&
+                                !facet_contact_touched(&group[part->entry])))
             part->entry = cut.entry;
         ARRAY_GROW(patch->cuts, patch->n_cuts + 1, patch->cut_capacity);
         patch->cuts[patch->n_cuts++] = cut;
@@ -116,7 +111,7 @@ static void hand_over(struct facet_patch *patch, struct facet_contact *group, co
     for (int m = 0; m < n; m++) {
         struct facet_contact *old = &group[near[m]];
         int p = 0;
-        if (!holds_history(old))
+        if (!facet_contact_touched(old))
             continue;
         while (p < patch->n_parts && patch->parts[p].smooth != skin->smooth[old->feature])
             p++;

@@ -65,6 +65,16 @@ static struct material_pair pair_of(const struct job *job, const struct job_pair
     return pair;
 }
 
+struct material_pair material_touch(const struct job *job, const struct job_pair *asked)
+{
+    const double p = job->materials[asked->a].young, q = job->materials[asked->b].young;
+    struct material_pair pair = {.friction = asked->friction,
+                                 .static_friction = asked->friction};
+    make_linear(&pair, p < q ? p : q, asked->tangential_ratio,
+                restitution_damping(asked->restitution));
+    return pair;
+}
+
 static bool is_full(const struct material_pair *pair)
 {
     return pair->static_friction > pair->friction || pair->rolling > 0.0 ||

@@ -7,6 +7,7 @@
 #include <stdbool.h>
 
 struct job;
+struct job_pair;
 
 /*
  * The constants of contact for one pair of materials (equations in src/THEORY.md, section 1).
@@ -40,6 +41,9 @@ struct materials {
     bool full; /* some pair resists rolling or twisting or has static friction of its own */
 };
 
+/* The spring of a node of one body of these materials on a face of another, of a width of 1 m.
+ * (12.19) */
+struct material_pair material_touch(const struct job *job, const struct job_pair *asked);
 void materials_build(struct materials *materials, const struct job *job);
 void materials_clear(struct materials *materials);
 

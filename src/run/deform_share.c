@@ -163,19 +163,7 @@ static struct change *find_changes(const struct simulation *sim, int *n)
             own[n_own++] = (struct change){b, i, owner};
         }
     }
-    int *sizes = array_allocate((size_t)comm->n_ranks, sizeof *sizes), first = 0;
-    CHECK((size_t)n_own <= INT32_MAX / sizeof *own, "%d nodes at once", n_own);
-    comm_gather_all(comm, &(int){n_own * (int)sizeof *own}, sizes, sizeof *sizes);
-    *n = 0;
-    for (int q = 0; q < comm->n_ranks; q++) {
-        first = q == comm->rank ? *n : first;
-        *n += sizes[q] / (int)sizeof *own;
-    }
-    struct change *all = array_allocate((size_t)*n, sizeof *all);
-    if (n_own > 0)
-        memcpy(all + first, own, (size_t)n_own * sizeof *own);
-    comm_gather_parts(comm, all, sizes);
-    free(sizes);
+    struct change *all = comm_gather_records(comm, own, n_own, sizeof *own, n);
     free(own);
     return all;
 }

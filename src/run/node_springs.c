@@ -10,7 +10,6 @@
 #include <string.h>
 
 #include "base/array.h"
-#include "base/report.h"
 #include "model/solid_ball.h"
 #include "physics/critical_step.h"
 #include "run/simulation.h"
@@ -121,24 +120,6 @@ static void add_contacts(struct entries *entries, const struct simulation *sim, 
     }
 }
 
-static struct entries gather(const struct comm *comm, const struct entries *own)
-{
-    struct entries all = {0};
-    int *sizes = array_allocate((size_t)comm->n_ranks, sizeof *sizes), before = 0;
-    CHECK((size_t)own->n <= INT32_MAX / sizeof *own->list, "%d springs", own->n);
-    comm_gather_all(comm, &(int){own->n * (int)sizeof *own->list}, sizes, sizeof *sizes);
-    for (int q = 0; q < comm->n_ranks; q++) {
-        before = q == comm->rank ? all.n : before;
-        all.n += sizes[q] / (int)sizeof *own->list;
-    }
-    all.list = array_allocate((size_t)all.n, sizeof *all.list);
-    if (own->n > 0)
-        memcpy(all.list + before, own->list, (size_t)own->n * sizeof *own->list);
-    comm_gather_parts(comm, all.list, sizes);
-    free(sizes);
-    return all;
-}
-
 static int compare_entries(const void *a, const void *b)
 {
     const struct entry *p = a, *q = b;
@@ -153,7 +134,8 @@ void node_springs_find(struct node_springs *springs, const struct simulation *si
     if (sim->touch.n_balls > 0)
         add_contacts(&own, sim, deform, &sim->touch.contacts, &sim->touch.spheres,
                      &sim->touch.materials, true);
-    struct entries all = gather(sim->comm, &own);
+    struct entries all = {0};
+    all.list = comm_gather_records(sim->comm, own.list, own.n, sizeof *own.list, &all.n);
     if (all.n > 1)
         qsort(all.list, (size_t)all.n, sizeof *all.list, compare_entries);
     *springs = (struct node_springs){array_allocate(n, sizeof *springs->stiffness),

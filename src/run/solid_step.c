@@ -13,7 +13,6 @@
 #include "job/job.h"
 #include "model/body.h"
 #include "model/material.h"
-#include "model/restitution.h"
 #include "model/solid_ball.h"
 #include "model/solid_mesh.h"
 #include "physics/critical_step.h"
@@ -179,19 +178,10 @@ static void push(const struct ground *ground, int node, double part, struct felt
  * touch.  (12.19) */
 static struct material_pair spring_between(const struct job *job, int a, int b)
 {
-    const double p = job->materials[a].young, q = job->materials[b].young;
-    const double lesser = p < q ? p : q;
     for (int k = 0; k < job->n_pairs; k++) {
         const struct job_pair *asked = &job->pairs[k];
         if ((asked->a == a && asked->b == b) || (asked->a == b && asked->b == a))
-            return (struct material_pair){
-                .linear = 1.0,
-                .normal = lesser,
-                .tangential = asked->tangential_ratio * lesser,
-                .damping = 2.0 * restitution_damping(asked->restitution) * sqrt(lesser),
-                .damping_ratio = sqrt(asked->tangential_ratio),
-                .friction = asked->friction,
-            };
+            return material_touch(job, asked);
     }
     return (struct material_pair){.linear = 1.0};
 }

@@ -2,13 +2,12 @@
 #include "run/touch.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
 #include "base/array.h"
-#include "base/report.h"
 #include "job/job.h"
-#include "model/restitution.h"
 #include "model/rigid.h"
 #include "model/solid_ball.h"
 #include "physics/critical_step.h"
@@ -40,23 +39,6 @@ static struct where find_ball(const struct deform *deform, int ball)
 /* ---- Building
  * --------------------------------------------------------------------------------- */
 
-/* Springs of balls of material a on bodies of material b, of a width of 1 m.  (12.19) */
-static struct material_pair pair_of(const struct job *job, const struct job_pair *asked, int a,
-                                    int b)
-{
-    const double p = job->materials[a].young, q = job->materials[b].young;
-    const double beta = restitution_damping(asked->restitution), lesser = p < q ? p : q;
-    return (struct material_pair){
-        .linear = 1.0,
-        .normal = lesser,
-        .tangential = asked->tangential_ratio * lesser,
-        .damping = 2.0 * beta * sqrt(lesser),
-        .damping_ratio = sqrt(asked->tangential_ratio),
-        .friction = asked->friction,
-        .static_friction = asked->friction,
-    };
-}
-
 static void build_materials(struct materials *materials, const struct job *job)
 {
     const size_t n = (size_t)job->n_materials;
@@ -64,8 +46,8 @@ static void build_materials(struct materials *materials, const struct job *job)
     materials->pairs = array_allocate(n * n, sizeof *materials->pairs);
     for (int k = 0; k < job->n_pairs; k++) {
         const int a = job->pairs[k].a, b = job->pairs[k].b;
-        materials->pairs[a * job->n_materials + b] = pair_of(job, &job->pairs[k], a, b);
-        materials->pairs[b * job->n_materials + a] = pair_of(job, &job->pairs[k], b, a);
+        materials->pairs[a * job->n_materials + b] =
+            materials->pairs[b * job->n_materials + a] = material_touch(job, &job->pairs[k]);
     }
 }
 
@@ -242,21 +224,9 @@ static struct facet_contact_record *gather_contacts(struct simulation *sim, int 
     const struct comm *comm = sim->comm;
     const struct touch *touch = &sim->touch;
     struct facet_contact_record *own = NULL;
-    int *sizes = array_allocate((size_t)comm->n_ranks, sizeof *sizes), before = 0;
     const int n_own =
         facet_contacts_records(&touch->contacts, &touch->spheres, 0, touch->n_balls, &own);
-    CHECK((size_t)n_own <= INT32_MAX / sizeof *own, "%d contacts of bodies", n_own);
-    comm_gather_all(comm, &(int){n_own * (int)sizeof *own}, sizes, sizeof *sizes);
-    *n = 0;
-    for (int q = 0; q < comm->n_ranks; q++) {
-        before = q == comm->rank ? *n : before;
-        *n += sizes[q] / (int)sizeof *own;
-    }
-    struct facet_contact_record *all = array_allocate((size_t)*n, sizeof *all);
-    if (n_own > 0)
-        memcpy(all + before, own, (size_t)n_own * sizeof *own);
-    comm_gather_parts(comm, all, sizes);
-    free(sizes);
+    struct facet_contact_record *all = comm_gather_records(comm, own, n_own, sizeof *own, n);
     free(own);
     return all;
 }

@@ -96,11 +96,6 @@ static struct split split_facet(const struct simulation *sim,
     return split;
 }
 
-static bool facet_touches(const struct facet_contact *contact)
-{
-    return contact->history[CONTACT_RADIUS_LANE] > 0.0;
-}
-
 /* What contacts do to the bodies that forces move, exact over all ranks: any rank then judges
  * its spheres alone.  Nothing in jobs without such bodies.  Collective. */
 static void load_bodies(const struct simulation *sim)
@@ -113,7 +108,7 @@ static void load_bodies(const struct simulation *sim)
     for (int k = 0; k < sim->facets.n; k++) {
         const struct facet_contact *contact = &sim->facets.list[k];
         const struct body *body = &sim->bodies.list[contact->body];
-        if (!facet_touches(contact) || body->rigid == NULL)
+        if (!facet_contact_touched(contact) || body->rigid == NULL)
             continue;
         const struct vec3 x = sphere_place(&sim->spheres, contact->sphere);
         const double yield = rigid_yield_most(body->rigid, x);
@@ -145,7 +140,7 @@ static void sum_contacts(const struct simulation *sim, struct critical_step_sums
     }
     for (int k = 0; k < sim->facets.n; k++) {
         const struct facet_contact *contact = &sim->facets.list[k];
-        if (!facet_touches(contact))
+        if (!facet_contact_touched(contact))
             continue;
         const struct split split = split_facet(sim, contact);
         critical_step_add(&sums[contact->sphere], &split.contact, &split.side[0]);
@@ -175,7 +170,7 @@ static void fill_matrices(const struct simulation *sim, const int *slots,
     }
     for (int k = 0; k < sim->facets.n; k++) {
         const struct facet_contact *contact = &sim->facets.list[k];
-        if (!facet_touches(contact) || slots[contact->sphere] < 0)
+        if (!facet_contact_touched(contact) || slots[contact->sphere] < 0)
             continue;
         const struct vec3 n =
             contact_geometry_closest(&sim->bodies.list[contact->body].mesh, contact->feature,
@@ -609,7 +604,7 @@ static void find_deepest_facet(const struct simulation *sim, struct deepest *dee
     const struct spheres *spheres = &sim->spheres;
     for (int k = 0; k < sim->facets.n; k++) {
         const struct facet_contact *contact = &sim->facets.list[k];
-        if (!facet_touches(contact))
+        if (!facet_contact_touched(contact))
             continue;
         const int i = contact->sphere;
         const struct body *body = &sim->bodies.list[contact->body];
