@@ -262,10 +262,20 @@ struct job_value {
     double value;
 };
 
-/* What is prescribed on a set of a solid; one of these (model/solid_condition). */
+/* How thick a part of a shell or membrane is. */
+struct job_thickness {
+    char *set;
+    double thickness; /* [m] */
+    struct job_place place;
+};
+
+/* What is prescribed on a set of a body that deforms; one of these (model/solid_condition). */
 struct job_boundary {
     char *set;
-    int fixed; /* directions in which nodes stay, a set of enum job_direction */
+    int fixed;       /* directions in which nodes stay, a set of enum job_direction */
+    int fixed_turns; /* axes about which they do not turn, likewise */
+    int n_motions;   /* which they follow, one after the other */
+    struct job_motion *motions;
     bool has_direction, has_velocity, has_force, has_pressure;
     int direction;                     /* 0 x, 1 y, 2 z: of displacement, velocity, force */
     double velocity, force, pressure;  /* [m/s], [N] in all, [Pa] against the surface */
@@ -318,23 +328,29 @@ struct job_solid {
         enum job_touches what;
         double stiffness; /* of a node's spring, over what it is made of [-] */
     } touches;
-    int n_sets, n_boundary;
+    int n_sets, n_boundary, n_thicknesses;
     struct job_set *sets;
+    struct job_thickness *thicknesses; /* of parts of shells and membranes */
     struct job_boundary *boundary;
     struct job_volume volume; /* Gmsh, once it has been read */
     struct solid_mesh *mesh;  /* kept by model/solid_mesh, which frees it; not a key */
 };
 
-enum job_model { JOB_MODEL_RIGID, JOB_MODEL_SOLID };
+enum job_model { JOB_MODEL_RIGID, JOB_MODEL_SOLID, JOB_MODEL_SHELL, JOB_MODEL_MEMBRANE };
 
-/* A rigid body: a surface of quads and triangles, at rest, moved as prescribed or by forces. Or
- * a solid, whose mesh takes min, max, from, to, radii, file, group, scale, rotation and shift
- * from here too. */
+/* A rigid body: a surface of quads and triangles, at rest, moved as prescribed or by forces.
+ * Or a shell or membrane of such a surface. Or a solid, whose mesh takes min, max, from, to,
+ * radii, file, group, scale, rotation and shift from here too. */
 struct job_body {
     char *name;
     int material;
     enum job_model model;
     struct job_solid solid;
+    struct {              /* shell, membrane */
+        double thickness; /* [m] */
+        double cell;      /* wanted width of an element [m]; 0: a facet is one */
+        int layers;       /* points through the thickness of a shell */
+    } sheet;
     struct job_place place;
     enum job_geometry geometry;
     struct vec3 point, normal; /* plane: a square facet through `point`, facing `normal` */
@@ -377,6 +393,12 @@ struct job_body {
     bool comes_and_goes;
     double active[2]; /* then: when it comes and when it goes [s] */
 };
+
+/* Is it made of finite elements? */
+static inline bool job_deforms(const struct job_body *body)
+{
+    return body->model != JOB_MODEL_RIGID;
+}
 
 /* A part of space with damping of its own, besides the job's. */
 struct job_damping_region {

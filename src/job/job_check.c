@@ -535,13 +535,11 @@ static void mesh_check(const struct check *check, const struct job_body *body, i
     }
 }
 
-/* The place of a body's motion m in messages, with a key of it: as the file has it, one mapping
- * or an element of a list. */
-static void motion_path(const struct check *check, int i, int m, const char *key, char *path,
-                        size_t size)
+/* The place of motion m of a list in messages, with a key of it: as the file has it, one
+ * mapping or an element of a list. */
+static void motion_path(const struct check *check, const char *list, int m, const char *key,
+                        char *path, size_t size)
 {
-    char list[64];
-    snprintf(list, sizeof list, "bodies.%d.motion", i);
     const struct yaml_tree_node *node = yaml_tree_nearest(check->root, list);
     if (node->kind == YAML_TREE_LIST)
         snprintf(path, size, "%s.%d.%s", list, m, key);
@@ -549,12 +547,13 @@ static void motion_path(const struct check *check, int i, int m, const char *key
         snprintf(path, size, "%s.%s", list, key);
 }
 
-static void path_check(const struct check *check, const struct job_motion *motion, int i, int m)
+static void path_check(const struct check *check, const struct job_motion *motion,
+                       const char *list, int m)
 {
     const struct job_path_point *points = motion->path.points;
-    char path[96];
+    char path[160];
     bool turns = false;
-    motion_path(check, i, m, "path.points", path, sizeof path);
+    motion_path(check, list, m, "path.points", path, sizeof path);
     if (motion->path.n > 0 && motion->path.file != NULL)
         mistake(check, path, "stands beside a file; one of them is expected");
     else if (motion->path.n < 2)
@@ -566,34 +565,36 @@ static void path_check(const struct check *check, const struct job_motion *motio
             continue;
         char point[32];
         snprintf(point, sizeof point, "path.points.%d.time", k);
-        motion_path(check, i, m, point, path, sizeof path);
+        motion_path(check, list, m, point, path, sizeof path);
         mistake(check, path,
                 "does not ascend; a time after that of the point before is expected");
         break;
     }
-    motion_path(check, i, m, "path.axis", path, sizeof path);
+    motion_path(check, list, m, "path.axis", path, sizeof path);
     if (turns && vec3_norm(motion->path.axis) == 0.0)
         mistake(check, path, "is missing; the axis of the path's angles is expected");
 }
 
-static void motions_check(const struct check *check, const struct job_body *body, int i)
+/* The motions under the key `list`. */
+static void motions_check(const struct check *check, int n, const struct job_motion *motions,
+                          const char *list)
 {
-    char path[96];
-    for (int m = 0; m < body->n_motions; m++) {
-        const struct job_motion *motion = &body->motions[m];
+    char path[160];
+    for (int m = 0; m < n; m++) {
+        const struct job_motion *motion = &motions[m];
         const int n_turns = (vec3_norm(motion->axis) > 0.0) +
                             (vec3_norm(motion->swing.axis) > 0.0) +
                             (vec3_norm(motion->path.axis) > 0.0);
-        motion_path(check, i, m, "stop", path, sizeof path);
+        motion_path(check, list, m, "stop", path, sizeof path);
         if (!(motion->start < motion->stop))
             mistake(check, path, "is not after start; a later time is expected");
-        motion_path(check, i, m, "rotation", path, sizeof path);
+        motion_path(check, list, m, "rotation", path, sizeof path);
         if (n_turns > 1)
             mistake(check, path,
                     "is one of several turns in a motion; one of rotation, swing and path.axis "
                     "is expected, others in motions of their own");
         if (motion->path.given)
-            path_check(check, motion, i, m);
+            path_check(check, motion, list, m);
     }
 }
 
@@ -774,24 +775,31 @@ static void table_check(const struct check *check, const char *item, const char 
     }
 }
 
-/* One item of a solid's boundary. */
-static void condition_check(const struct check *check, const char *item,
+/* One item of the boundary of a body that deforms. */
+static void condition_check(const struct check *check, const char *item, enum job_model model,
                             const struct job_boundary *asked)
 {
     char path[160];
     const int moved = (asked->n_displacements > 0) + asked->has_velocity +
                       (asked->n_velocities > 0) + asked->has_force + (asked->n_forces > 0);
     const int pressed = asked->has_pressure + (asked->n_pressures > 0);
-    if (moved + pressed + (asked->fixed != 0) != 1)
+    const int held = (asked->fixed != 0 || asked->fixed_turns != 0) + (asked->n_motions > 0);
+    if (moved + pressed + held != 1)
         mistake(check, item,
-                "prescribes %s; one of fixed, displacement_table, velocity, force, pressure or "
-                "one of their tables is expected, others in items of their own",
-                moved + pressed + asked->fixed == 0 ? "nothing" : "several things");
+                "prescribes %s; one of fixed with fixed_turns, motion, displacement_table, "
+                "velocity, force, pressure or one of their tables is expected, others in items "
+                "of their own",
+                moved + pressed + held == 0 ? "nothing" : "several things");
     else if ((moved == 1) != asked->has_direction)
         mistake(check, item,
                 "has %s; x, y or z is expected beside displacement, velocity and "
                 "force alone",
                 moved == 1 ? "no direction" : "a direction that says nothing");
+    PATH("%s.fixed_turns", item);
+    if (asked->fixed_turns != 0 && model != JOB_MODEL_SHELL)
+        mistake(check, path, "holds what does not turn; nodes of a shell are expected");
+    PATH("%s.motion", item);
+    motions_check(check, asked->n_motions, asked->motions, path);
     table_check(check, item, "displacement_table", asked->n_displacements,
                 asked->displacements);
     table_check(check, item, "velocity_table", asked->n_velocities, asked->velocities);
@@ -836,12 +844,17 @@ static void solid_shape_check(const struct check *check, const struct job_body *
                 cells ? "twice" : "not");
 }
 
-static void solid_check(const struct check *check, const struct job_body *body, int i,
-                        bool read_files)
+static bool is_round(const struct job_body *body)
+{
+    return body->geometry == JOB_GEOMETRY_CYLINDER || body->geometry == JOB_GEOMETRY_CONE ||
+           body->geometry == JOB_GEOMETRY_CONICAL_HOPPER || body->geometry == JOB_GEOMETRY_TUBE;
+}
+
+/* What bodies that deform have besides their shapes. */
+static void parts_check(const struct check *check, const struct job_body *body, int i)
 {
     const struct job_solid *solid = &body->solid;
     char path[64];
-    solid_shape_check(check, body, i, read_files);
     PATH("bodies.%d.sets", i);
     names_check(check, path, solid->n_sets, solid->sets, sizeof *solid->sets);
     for (int k = 0; k < solid->n_sets; k++) {
@@ -855,7 +868,7 @@ static void solid_check(const struct check *check, const struct job_body *body, 
     }
     for (int k = 0; k < solid->n_boundary; k++) {
         PATH("bodies.%d.boundary.%d", i, k);
-        condition_check(check, path, &solid->boundary[k]);
+        condition_check(check, path, body->model, &solid->boundary[k]);
     }
 }
 
@@ -904,10 +917,18 @@ static void bodies_check(const struct check *check, bool read_files, bool *stand
             continue;
         standing[body->material] = true;
         if (body->model == JOB_MODEL_SOLID)
-            solid_check(check, body, i, read_files);
+            solid_shape_check(check, body, i, read_files);
         else
             shape_check(check, body, i, read_files);
-        motions_check(check, body, i);
+        if (job_deforms(body))
+            parts_check(check, body, i);
+        PATH("bodies.%d.geometry.segments", i);
+        if (job_deforms(body) && is_round(body) && body->segments == 0)
+            mistake(check, path,
+                    "is exact, the curved surface itself, which has no elements; a number of "
+                    "facets around the axis is expected");
+        PATH("bodies.%d.motion", i);
+        motions_check(check, body->n_motions, body->motions, path);
         forced_check(check, body, i);
         running_check(check, body, i);
         PATH("bodies.%d.active", i);
@@ -1008,7 +1029,7 @@ static void contents_check(const struct check *check)
 static const struct job_body *solid_find(const struct job *job, const char *name)
 {
     for (int b = 0; b < job->n_bodies; b++)
-        if (job->bodies[b].model == JOB_MODEL_SOLID && job->bodies[b].name != NULL &&
+        if (job_deforms(&job->bodies[b]) && job->bodies[b].name != NULL &&
             strcmp(job->bodies[b].name, name) == 0)
             return &job->bodies[b];
     return NULL;
@@ -1035,7 +1056,7 @@ static void probes_check(const struct check *check)
         PATH("output.probes.%d.body", i);
         if (solid_find(check->job, probe->body) == NULL)
             mistake(check, path,
-                    "names '%s', which is no body with model solid; the name of one is "
+                    "names '%s', which is no body that deforms; the name of one is "
                     "expected",
                     probe->body);
     }
@@ -1181,7 +1202,7 @@ static void laws_check(const struct check *check)
 static bool has_solid(const struct job *job)
 {
     for (int b = 0; b < job->n_bodies; b++)
-        if (job->bodies[b].model == JOB_MODEL_SOLID)
+        if (job_deforms(&job->bodies[b]))
             return true;
     return false;
 }

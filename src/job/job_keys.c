@@ -41,7 +41,7 @@ static const char *const dimensions[] = {"3", NULL};
 static const char *const laws[] = {"hertz-mindlin", "linear", NULL};
 static const char *const pair_laws[] = {"hertz-mindlin", "linear", "default", NULL};
 static const char *const rollings[] = {"spring", "constant", NULL};
-static const char *const models[] = {"rigid", "solid", NULL};
+static const char *const models[] = {"rigid", "solid", "shell", "membrane", NULL};
 static const char *const mesh_kinds[] = {"box", "plate", "cylinder", "tube", "gmsh", NULL};
 static const char *const elements[] = {"hexahedra", "tetrahedra", NULL};
 static const char *const hourglasses[] = {"stiffness", "viscous", NULL};
@@ -139,7 +139,7 @@ static const struct schema_key material_keys[] = {
     {"poisson", SCHEMA_NUMBER, "Poisson's ratio", .unit = "1", .required = true,
      INSIDE(-1.0, 0.5), AT(struct job_material, poisson)},
     {"yield", SCHEMA_NUMBER,
-     "of a body with model solid: stress at which it begins to flow (von Mises); elastic when "
+     "of a body that deforms: stress at which it begins to flow (von Mises); elastic when "
      "left out",
      .unit = "Pa", ABOVE_TO(0.0, 1e15), GIVEN(struct job_material, yield),
      AT(struct job_material, yield)},
@@ -729,8 +729,16 @@ static const struct schema_key boundary_keys[] = {
      .required = true, AT(struct job_boundary, set)},
     {"fixed", SCHEMA_CHOICES,
      "directions in which its nodes stay where they are; an item of the list has one of fixed, "
-     "displacement_table, velocity, force, pressure or one of their tables",
+     "fixed_turns, motion, displacement_table, velocity, force, pressure or one of their tables",
      .choices = directions, GIVEN(struct job_boundary, fixed), AT(struct job_boundary, fixed)},
+    {"fixed_turns", SCHEMA_CHOICES, "axes about which its nodes, those of a shell, do not turn",
+     .choices = directions, GIVEN(struct job_boundary, fixed_turns),
+     AT(struct job_boundary, fixed_turns)},
+    {"motion", SCHEMA_LIST,
+     "a motion that its nodes follow, and turn with, as a rigid body would; one, or several as "
+     "in a body's `motion`",
+     .single = true, GIVEN(struct job_boundary, n_motions), BETWEEN(1.0, 100.0),
+     .inside = motion_keys, LIST_AT(struct job_boundary, motions, n_motions)},
     {"direction", SCHEMA_CHOICE, "direction of displacement, velocity or force",
      .choices = directions, GIVEN(struct job_boundary, has_direction),
      AT(struct job_boundary, direction)},
@@ -790,31 +798,60 @@ static const struct schema_key touches_keys[] = {
      AT(struct job_body, solid.touches.stiffness)},
     END};
 
-#define RIGID KIND(JOB_MODEL_RIGID)
-#define SOLID KIND(JOB_MODEL_SOLID)
+static const struct schema_key thickness_keys[] = {
+    {"set", SCHEMA_TEXT, "name of a set of the body: its elements", .required = true,
+     AT(struct job_thickness, set)},
+    {"thickness", SCHEMA_NUMBER, "how thick they are", .unit = "m", .required = true,
+     ABOVE_TO(0.0, FAR), AT(struct job_thickness, thickness)},
+    END};
+
+#define RIGID   KIND(JOB_MODEL_RIGID)
+#define SOLID   KIND(JOB_MODEL_SOLID)
+#define SHELL   KIND(JOB_MODEL_SHELL)
+#define SHEETS  (SHELL | KIND(JOB_MODEL_MEMBRANE))
+#define DEFORMS (SOLID | SHEETS)
 
 static const struct schema_key body_keys[] = {
     {"name", SCHEMA_NAME, "name of the body, used once", .required = true,
      AT(struct job_body, name)},
     {"material", SCHEMA_REFERENCE, "material of its surface", .required = true,
      AT(struct job_body, material)},
-    {"model", SCHEMA_CHOICE, "how it deforms: not at all, or as a solid of finite elements",
+    {"model", SCHEMA_CHOICE,
+     "how it deforms: not at all, or by finite elements, as a solid, as a shell, which bends, or as "
+     "a membrane, which does not resist bending",
      .standard = "rigid", .choices = models, AT(struct job_body, model)},
-    {"geometry", SCHEMA_GROUP, "its surface", .required = true, .kinds = RIGID,
-     .inside = geometry_keys},
+    {"geometry", SCHEMA_GROUP,
+     "its surface. Sets that come with a shell or membrane: `all`, `surface`; `rim`, its free "
+     "edges",
+     .required = true, .kinds = RIGID | SHEETS, .inside = geometry_keys},
+    {"thickness", SCHEMA_NUMBER, "how thick it is, half of it on each side of its geometry",
+     .unit = "m", .required = true, ABOVE_TO(0.0, FAR), .kinds = SHEETS,
+     AT(struct job_body, sheet.thickness)},
+    {"thicknesses", SCHEMA_LIST, "of sets with other thicknesses", UP_TO(1000.0),
+     .kinds = SHEETS, .inside = thickness_keys, GIVEN(struct job_body, solid.n_thicknesses),
+     LIST_AT(struct job_body, solid.thicknesses, solid.n_thicknesses)},
+    {"cell", SCHEMA_NUMBER,
+     "the width that an element should have at most; when left out each facet is one element",
+     .unit = "m", ABOVE_TO(0.0, FAR), .kinds = SHEETS, GIVEN(struct job_body, sheet.cell),
+     AT(struct job_body, sheet.cell)},
+    {"layers", SCHEMA_INT,
+     "points through the thickness at which it is found whether it flows; 2 are exact while it "
+     "does not",
+     .standard = "3", BETWEEN(1.0, 5.0), .kinds = SHELL, AT(struct job_body, sheet.layers)},
     {"mesh", SCHEMA_GROUP, "its elements", .required = true, .kinds = SOLID,
      .inside = solid_mesh_keys},
     {"sets", SCHEMA_LIST, "parts of it besides those that its mesh has", UP_TO(1000.0),
-     .kinds = SOLID, .inside = set_keys, GIVEN(struct job_body, solid.n_sets),
+     .kinds = DEFORMS, .inside = set_keys, GIVEN(struct job_body, solid.n_sets),
      LIST_AT(struct job_body, solid.sets, solid.n_sets)},
     {"boundary", SCHEMA_LIST, "what is prescribed on its sets; free elsewhere", UP_TO(1000.0),
-     .kinds = SOLID, .inside = boundary_keys, GIVEN(struct job_body, solid.n_boundary),
+     .kinds = DEFORMS, .inside = boundary_keys, GIVEN(struct job_body, solid.n_boundary),
      LIST_AT(struct job_body, solid.boundary, solid.n_boundary)},
     {"velocity", SCHEMA_NUMBER, "velocity of all its nodes at the start", .unit = "m/s",
-     .standard = ZERO, BETWEEN(-FAR, FAR), .kinds = SOLID, AT(struct job_body, solid.velocity)},
-    {"damping", SCHEMA_GROUP, "Rayleigh's damping", .kinds = SOLID,
+     .standard = ZERO, BETWEEN(-FAR, FAR), .kinds = DEFORMS,
+     AT(struct job_body, solid.velocity)},
+    {"damping", SCHEMA_GROUP, "Rayleigh's damping", .kinds = DEFORMS,
      .inside = solid_damping_keys},
-    {"hourglass", SCHEMA_GROUP, "hourglass control of hexahedra", .kinds = SOLID,
+    {"hourglass", SCHEMA_GROUP, "hourglass control of hexahedra and quads", .kinds = DEFORMS,
      .inside = hourglass_keys},
     {"touches", SCHEMA_GROUP, "what its nodes touch; its faces touch whatever touches them",
      .kinds = SOLID, .inside = touches_keys},
@@ -1097,8 +1134,7 @@ static const struct schema_key snapshots_keys[] = {
 static const struct schema_key probe_keys[] = {
     {"name", SCHEMA_NAME, "name of the probe, used once", .required = true,
      AT(struct job_probe, name)},
-    {"body", SCHEMA_NAME, "a body with model solid", .required = true,
-     AT(struct job_probe, body)},
+    {"body", SCHEMA_NAME, "a body that deforms", .required = true, AT(struct job_probe, body)},
     {"node", SCHEMA_NUMBER,
      "its displacement and velocity: of the node that at the start is nearest to this point; a "
      "probe has one of node, nodes, element, elements",

@@ -124,16 +124,23 @@ static void read_file(struct job_motion *motion, struct mistakes *mistakes)
     fclose(in);
 }
 
+static void read_motions(int n, struct job_motion *motions, struct mistakes *mistakes)
+{
+    for (int m = 0; m < n; m++) {
+        if (motions[m].path.file == NULL || motions[m].path.n > 0)
+            continue; /* points and a file: job_check says so */
+        read_file(&motions[m], mistakes);
+        free(motions[m].path.file);
+        motions[m].path.file = NULL;
+    }
+}
+
 void path_file_read_all(struct job *job, struct mistakes *mistakes)
 {
     for (int b = 0; b < job->n_bodies; b++) {
-        for (int m = 0; m < job->bodies[b].n_motions; m++) {
-            struct job_motion *motion = &job->bodies[b].motions[m];
-            if (motion->path.file == NULL || motion->path.n > 0)
-                continue; /* points and a file: job_check says so */
-            read_file(motion, mistakes);
-            free(motion->path.file);
-            motion->path.file = NULL;
-        }
+        const struct job_solid *solid = &job->bodies[b].solid;
+        read_motions(job->bodies[b].n_motions, job->bodies[b].motions, mistakes);
+        for (int k = 0; k < solid->n_boundary; k++)
+            read_motions(solid->boundary[k].n_motions, solid->boundary[k].motions, mistakes);
     }
 }

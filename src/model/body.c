@@ -15,6 +15,7 @@
 #include "model/geometry.h"
 #include "model/motion.h"
 #include "model/rigid.h"
+#include "model/skin.h"
 
 static const struct vec3 ZERO = {0.0, 0.0, 0.0};
 
@@ -180,9 +181,6 @@ static void copy_motions(struct body *body, const struct job_body *asked)
     }
 }
 
-/* Faces whose normals differ by more than this (cosine of 40 degrees) meet in an edge. */
-static const double SMOOTH = 0.766044443118978;
-
 static int first_of(int *smooth, int face)
 {
     while (smooth[face] != face)
@@ -199,7 +197,7 @@ static int *find_smooth(const struct mesh *mesh)
     for (int e = 0; e < mesh->n_edges; e++) {
         const int *faces = mesh->edges[e].faces;
         if (faces[1] < 0 ||
-            vec3_dot(mesh->face_normal[faces[0]], mesh->face_normal[faces[1]]) < SMOOTH)
+            vec3_dot(mesh->face_normal[faces[0]], mesh->face_normal[faces[1]]) < SKIN_SMOOTH)
             continue;
         const int a = first_of(smooth, faces[0]), b = first_of(smooth, faces[1]);
         smooth[a > b ? a : b] = a < b ? a : b;
@@ -248,7 +246,7 @@ static void body_build(struct body *body, const struct job_body *asked, double e
         body->moves = true;
         return;
     }
-    if (asked->model == JOB_MODEL_SOLID) {
+    if (job_deforms(asked)) {
         body->skin = body_skin_build(&body->mesh);
         body->moves = true;
         return;

@@ -18,6 +18,7 @@
 #include "base/report.h"
 #include "job/job.h"
 #include "model/mesh.h"
+#include "model/skin.h"
 #include "model/solid_mesh.h"
 
 static const double PI = 3.14159265358979323846;
@@ -345,8 +346,9 @@ static void place_profile(struct geometry *geometry, const struct job_body *body
     }
 }
 
-static void build_shape(struct geometry *geometry, const struct job_body *body)
+void geometry_build_shape(struct geometry *geometry, const struct job_body *body)
 {
+    *geometry = (struct geometry){0};
     switch (body->geometry) {
     case JOB_GEOMETRY_PLANE:
         build_plane(geometry, body);
@@ -372,31 +374,31 @@ static void build_shape(struct geometry *geometry, const struct job_body *body)
     CHECK(false, "unknown geometry %d", (int)body->geometry);
 }
 
-/* The surface of a solid, at its nodes. */
-static void build_solid(struct geometry *geometry, const struct job_body *body)
+/* The surface of a body that deforms. */
+static void build_skin(struct geometry *geometry, const struct job_body *body)
 {
     struct solid_mesh own;
-    int n_vertices, *nodes, (*facets)[4];
+    struct skin skin;
     const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
-    const int n_facets = solid_mesh_skin(mesh, &n_vertices, &nodes, &facets);
-    reserve(geometry, n_vertices, n_facets);
-    for (int v = 0; v < n_vertices; v++)
-        geometry->vertices[geometry->n_vertices++] = mesh->nodes[nodes[v]];
-    for (int f = 0; f < n_facets; f++)
-        memcpy(geometry->facets[geometry->n_facets++], facets[f], sizeof *facets);
-    free(nodes);
-    free(facets);
+    skin_build(&skin, mesh);
+    reserve(geometry, skin.n_vertices, skin.n_facets);
+    geometry->n_vertices = skin.n_vertices;
+    geometry->n_facets = skin.n_facets;
+    skin_place(&skin, mesh->nodes, geometry->vertices);
+    for (int f = 0; f < skin.n_facets; f++)
+        memcpy(geometry->facets[f], skin.facets[f], sizeof *skin.facets);
+    skin_clear(&skin);
     solid_mesh_clear(&own);
 }
 
 void geometry_build(struct geometry *geometry, const struct job_body *body)
 {
     *geometry = (struct geometry){0};
-    if (body->model == JOB_MODEL_SOLID) {
-        build_solid(geometry, body);
+    if (job_deforms(body)) {
+        build_skin(geometry, body);
         return;
     }
-    build_shape(geometry, body);
+    geometry_build_shape(geometry, body);
     geometry_place(body, geometry->n_vertices, geometry->vertices);
     place_profile(geometry, body);
 }
@@ -417,7 +419,7 @@ void geometry_build_mesh(struct mesh *mesh, const struct job_body *body)
     if (g.n_bands > 0)
         mesh_build_round(mesh, &profile, g.origin, g.direction, g.n_vertices, g.vertices,
                          g.n_facets, (const int(*)[4])g.facets);
-    else if (body->model == JOB_MODEL_SOLID)
+    else if (job_deforms(body))
         mesh_build_skin(mesh, g.n_vertices, g.vertices, g.n_facets, (const int(*)[4])g.facets);
     else
         mesh_build(mesh, g.n_vertices, g.vertices, g.n_facets, (const int(*)[4])g.facets);

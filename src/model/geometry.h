@@ -28,7 +28,10 @@ struct geometry {
 /* Local. */
 /* Scales, rotates and moves points as the body asks. */
 void geometry_place(const struct job_body *body, int n, struct vec3 *points);
-/* Of a solid: its outer surface. */
+/* The shape itself, not placed yet; of what has no facets round the axis those that stand for
+ * it. */
+void geometry_build_shape(struct geometry *geometry, const struct job_body *body);
+/* Of a body that deforms: what contacts see of it (model/skin.h). */
 void geometry_build(struct geometry *geometry, const struct job_body *body);
 void geometry_clear(struct geometry *geometry);
 /* The body's surface, with its features. Local. */

@@ -54,8 +54,7 @@ static int compare_corners(const void *a, const void *b)
     return order != 0 ? order : p->index - q->index;
 }
 
-/* For every vertex the first one at the same place. */
-static int *joined_vertices(int n, const struct vec3 *vertices)
+int *mesh_joined_vertices(int n, const struct vec3 *vertices)
 {
     struct corner *corners = array_allocate((size_t)n, sizeof *corners);
     int *joined = array_allocate((size_t)n, sizeof *joined);
@@ -187,7 +186,7 @@ static struct draft draft_faces(int n_vertices, const struct vec3 *vertices, int
     draft.mean_of = array_allocate((size_t)n_facets, sizeof *draft.mean_of);
     for (int v = 0; v < n_vertices; v++)
         draft.vertices[v] = vertices[v];
-    int *joined = deforms ? all_apart(n_vertices) : joined_vertices(n_vertices, vertices);
+    int *joined = deforms ? all_apart(n_vertices) : mesh_joined_vertices(n_vertices, vertices);
     for (int f = 0; f < n_facets; f++) {
         const struct mesh_face face = joined_facet(facets[f], joined, n_vertices);
         const int n_before = draft.n_faces;

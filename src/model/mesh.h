@@ -116,6 +116,8 @@ void mesh_build_skin(struct mesh *mesh, int n_vertices, const struct vec3 *verti
 void mesh_build_round(struct mesh *mesh, const struct mesh_profile *profile, struct vec3 origin,
                       struct vec3 direction, int n_vertices, const struct vec3 *vertices,
                       int n_skin, const int (*skin)[4]);
+/* For every vertex the first one at exactly the same place.  The caller frees them. */
+int *mesh_joined_vertices(int n, const struct vec3 *vertices);
 void mesh_clear(struct mesh *mesh);
 struct mesh_survey mesh_survey(const struct mesh *mesh);
 /* Recomputes what is derived from `place`. */

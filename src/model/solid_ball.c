@@ -143,7 +143,8 @@ struct solid_ball *solid_balls(const struct solid_mesh *mesh, const struct mesh 
     const struct around around = find_around(mesh);
     for (int v = 0; v < skin->n_corners; v++) {
         balls[v].outer = nodes[v];
-        place_ball(mesh, skin, &around, v, &balls[v]);
+        if (mesh->sheets == NULL)
+            place_ball(mesh, skin, &around, v, &balls[v]);
     }
     share_areas(skin, balls);
     free(around.begin);

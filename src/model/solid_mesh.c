@@ -14,6 +14,7 @@
 #include "job/job.h"
 #include "model/geometry.h"
 #include "model/region.h"
+#include "model/sheet_shape.h"
 #include "model/solid_shape.h"
 
 /* ---------------------------------------------------------------------------------- sides */
@@ -33,6 +34,10 @@ int solid_mesh_side_corners(int n_corners, int side, int corners[4])
 
 int solid_mesh_side_nodes(const int element[8], int side, int nodes[4])
 {
+    if (solid_mesh_is_sheet(element)) {
+        memcpy(nodes, element, 4 * sizeof *nodes);
+        return side == 0 ? solid_mesh_n_corners(element) : 0;
+    }
     const int n = solid_mesh_side_corners(solid_mesh_n_corners(element), side, nodes);
     for (int k = 0; k < n; k++)
         nodes[k] = element[nodes[k]];
@@ -41,7 +46,7 @@ int solid_mesh_side_nodes(const int element[8], int side, int nodes[4])
     return n;
 }
 
-/* All sides of all elements, by their nodes. */
+/* All sides of all elements that are no sheets, by their nodes. */
 struct side_table {
     int n_heads, per_node;
     int *heads, *next; /* numbers of sides; -1: none */
@@ -90,8 +95,9 @@ static void table_build(struct side_table *table, const struct solid_mesh *mesh)
     table->heads = array_allocate((size_t)table->n_heads, sizeof *table->heads);
     table->next = array_allocate(n, sizeof *table->next);
     memset(table->heads, -1, (size_t)table->n_heads * sizeof *table->heads);
-    for (int e = mesh->n_elements - 1; e >= 0; e--) /* so that lists ascend */
-        for (int s = solid_mesh_n_sides(mesh->elements[e]) - 1; s >= 0; s--) {
+    for (int e = mesh->n_elements - 1; e >= 0; e--) { /* so that lists ascend */
+        const bool is_sheet = solid_mesh_is_sheet(mesh->elements[e]);
+        for (int s = is_sheet ? -1 : solid_mesh_n_sides(mesh->elements[e]) - 1; s >= 0; s--) {
             const int number = SOLID_MESH_SIDES * e + s;
             int sorted[4];
             sorted_nodes(mesh, number, sorted);
@@ -99,6 +105,7 @@ static void table_build(struct side_table *table, const struct solid_mesh *mesh)
             table->next[number] = *head;
             *head = number;
         }
+    }
 }
 
 static void table_clear(struct side_table *table)
@@ -156,7 +163,8 @@ int *solid_mesh_partners(const struct solid_mesh *mesh)
                                                      ? SOLID_MESH_OUTSIDE
                                                      : SOLID_MESH_NO_SIDE;
     for (int number = 0; number < SOLID_MESH_SIDES * mesh->n_elements; number++)
-        if (partners[number] == SOLID_MESH_OUTSIDE)
+        if (partners[number] == SOLID_MESH_OUTSIDE &&
+            !solid_mesh_is_sheet(mesh->elements[number / SOLID_MESH_SIDES]))
             join(&table, mesh, number, partners);
     table_clear(&table);
     return partners;
@@ -224,33 +232,6 @@ void solid_mesh_add_set(struct solid_mesh *mesh, const char *name,
         set->sides[k] = (struct solid_mesh_side){numbers[k] / SOLID_MESH_SIDES,
                                                  numbers[k] % SOLID_MESH_SIDES};
     free(numbers);
-}
-
-int solid_mesh_skin(const struct solid_mesh *mesh, int *n_vertices, int **nodes,
-                    int (**facets)[4])
-{
-    struct solid_mesh_side *sides;
-    const int n = solid_mesh_surface(mesh, &sides);
-    int *vertex = array_allocate((size_t)mesh->n_nodes, sizeof *vertex); /* 0: none, else + 1 */
-    *nodes = array_allocate((size_t)mesh->n_nodes, sizeof **nodes);
-    *facets = array_allocate((size_t)n, sizeof **facets);
-    *n_vertices = 0;
-    for (int k = 0; k < n; k++) {
-        int *facet = (*facets)[k];
-        const int n_corners =
-            solid_mesh_side_nodes(mesh->elements[sides[k].element], sides[k].side, facet);
-        for (int c = 0; c < n_corners; c++) {
-            const int node = facet[c];
-            if (vertex[node] == 0) {
-                (*nodes)[*n_vertices] = node;
-                vertex[node] = ++*n_vertices;
-            }
-            facet[c] = vertex[node] - 1;
-        }
-    }
-    free(vertex);
-    free(sides);
-    return n;
 }
 
 const struct solid_mesh_set *solid_mesh_find(const struct solid_mesh *mesh, const char *name)
@@ -500,12 +481,23 @@ static void build_file(struct solid_mesh *mesh, const struct job_body *body)
 
 /* ------------------------------------------------------------------------------------ all */
 
+/* A set that is not there is told of elsewhere. */
+static void set_thickness(struct solid_mesh *mesh, const struct job_thickness *asked)
+{
+    const struct solid_mesh_set *set = solid_mesh_find(mesh, asked->set);
+    for (int k = 0; set != NULL && k < set->n_elements; k++)
+        if (solid_mesh_is_sheet(mesh->elements[set->elements[k]]))
+            mesh->sheets[set->elements[k]].thickness = asked->thickness;
+}
+
 void solid_mesh_build(struct solid_mesh *mesh, const struct job_body *body)
 {
     const struct job_solid *solid = &body->solid;
     struct solid_mesh_side *surface;
     *mesh = (struct solid_mesh){0};
-    if (solid->kind == JOB_MESH_GMSH)
+    if (body->model != JOB_MODEL_SOLID)
+        sheet_shape_build(mesh, body);
+    else if (solid->kind == JOB_MESH_GMSH)
         build_file(mesh, body);
     else
         solid_shape_build(mesh, body);
@@ -517,6 +509,8 @@ void solid_mesh_build(struct solid_mesh *mesh, const struct job_body *body)
         add_surface(mesh, n, surface);
     for (int k = 0; k < solid->n_sets; k++)
         add_region(mesh, &solid->sets[k], n, surface);
+    for (int k = 0; k < solid->n_thicknesses; k++)
+        set_thickness(mesh, &solid->thicknesses[k]);
     free(surface);
 }
 
@@ -533,6 +527,7 @@ void solid_mesh_clear(struct solid_mesh *mesh)
     free(mesh->elements);
     free(mesh->node_numbers);
     free(mesh->element_numbers);
+    free(mesh->sheets);
     *mesh = (struct solid_mesh){0};
 }
 

@@ -1,15 +1,18 @@
 /*
  * The mesh of a deformable solid at time 0: nodes, elements, and named sets of them.
  *
- * An element has eight nodes, a hexahedron, or four and then -1, a tetrahedron.  Of a
- * hexahedron nodes 0 to 3 go round its bottom counter-clockwise as seen from its top, nodes 4
- * to 7 lie above them; of a tetrahedron nodes 0, 1, 2 go round counter-clockwise as seen from
- * node 3.  So both have positive volumes.  (Abaqus, LS-DYNA and Gmsh number them so too.)
+ * An element has eight nodes, a hexahedron, or four and then -1, a tetrahedron; or it is one
+ * of a shell or membrane, a sheet: a quad of four nodes or a triangle of three and -1, and
+ * then SOLID_MESH_SHEET.  Of a hexahedron nodes 0 to 3 go round its bottom counter-clockwise
+ * as seen from its top, nodes 4 to 7 lie above them; of a tetrahedron nodes 0, 1, 2 go round
+ * counter-clockwise as seen from node 3.  So both have positive volumes.  (Abaqus, LS-DYNA and
+ * Gmsh number them so too.)
  *
  * A hexahedron's sides are its bottom, its top, and those above the edges 0-1, 1-2, 2-3, 3-0
  * of the bottom; a tetrahedron's that of the nodes 0, 1, 2 and those above its edges 0-1, 1-2,
  * 2-0.  Pressures (solid/solid_side.h) count them so too: there is one table of them,
- * solid_mesh_side_corners().
+ * solid_mesh_side_corners().  A sheet has one, itself as seen from the side to which its nodes
+ * go round counter-clockwise.
  *
  * Elements of a file keep its order, nodes come by number; whatever comes from here depends on
  * the job alone.  Local, all of it.
@@ -17,6 +20,7 @@
 #ifndef TREMIE_MODEL_SOLID_MESH_H
 #define TREMIE_MODEL_SOLID_MESH_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/vec3.h"
@@ -24,7 +28,8 @@
 struct job;
 struct job_body;
 
-enum { SOLID_MESH_SIDES = 6 }; /* that an element has room for */
+enum { SOLID_MESH_SIDES = 6 };  /* that an element has room for */
+enum { SOLID_MESH_SHEET = -2 }; /* fifth of an element of a shell or membrane */
 
 struct solid_mesh_side {
     int element, side;
@@ -40,12 +45,20 @@ struct solid_mesh_set {
     int n_strays; /* facets of the file that are no such side */
 };
 
+/* What an element of a shell or membrane is besides its nodes. */
+struct solid_mesh_sheet {
+    double thickness; /* [m]; 0 of all other elements */
+    bool membrane;
+    int material; /* among the job's */
+};
+
 struct solid_mesh {
     int n_nodes, n_elements, n_sets;
     struct vec3 *nodes; /* [m] */
     int (*elements)[8];
     int64_t *node_numbers, *element_numbers; /* what the file calls them; else from 1 */
     struct solid_mesh_set *sets;
+    struct solid_mesh_sheet *sheets; /* of each element; NULL: there is no sheet */
 };
 
 /* The body's mesh, placed, with all of its sets: those that come with a shape or a file, and
@@ -64,13 +77,17 @@ void solid_mesh_release(struct job *job);
 /* NULL where there is none of this name. */
 const struct solid_mesh_set *solid_mesh_find(const struct solid_mesh *mesh, const char *name);
 
+static inline bool solid_mesh_is_sheet(const int element[8])
+{
+    return element[4] == SOLID_MESH_SHEET;
+}
 static inline int solid_mesh_n_corners(const int element[8])
 {
-    return element[4] < 0 ? 4 : 8;
+    return element[4] >= 0 ? 8 : element[3] >= 0 ? 4 : 3;
 }
 static inline int solid_mesh_n_sides(const int element[8])
 {
-    return element[4] < 0 ? 4 : 6;
+    return element[4] >= 0 ? 6 : solid_mesh_is_sheet(element) ? 1 : 4;
 }
 /* Which corners of an element with so many make a side, counter-clockwise seen from outside:
  * 0321, 4567, 0154, 1265, 2376, 3047 of a hexahedron, 021, 013, 123, 203 of a tetrahedron.
@@ -84,16 +101,11 @@ int solid_mesh_side_nodes(const int element[8], int side, int nodes[4]);
 enum {
     SOLID_MESH_OUTSIDE = -1, /* nothing: it is on the surface */
     SOLID_MESH_SEVERAL = -2, /* sides of several elements: a fault */
-    SOLID_MESH_NO_SIDE = -3  /* a tetrahedron has but four */
+    SOLID_MESH_NO_SIDE = -3  /* a tetrahedron has but four, a sheet one */
 };
 int *solid_mesh_partners(const struct solid_mesh *mesh);
 /* The sides on the surface, ascending; returns how many.  The caller frees them. */
 int solid_mesh_surface(const struct solid_mesh *mesh, struct solid_mesh_side **sides);
-
-/* The surface as facets (a triangle has -1 last) of vertices numbered as they first occur;
- * nodes[v] is vertex v's.  Returns how many facets.  The caller frees both. */
-int solid_mesh_skin(const struct solid_mesh *mesh, int *n_vertices, int **nodes,
-                    int (**facets)[4]);
 
 /* Adds a set, which must not be there: for what builds meshes.  `sides` are counted as above;
  * lists need neither ascend nor have everything once. */

@@ -58,13 +58,18 @@ static struct vec3 side_area(const struct solid_mesh *mesh, const int nodes[4], 
     return sum;
 }
 
-/* Volume of an element and area of its largest side. */
+/* Volume of an element and area of its largest side; of a sheet its own. */
 static double measure(const struct solid_mesh *mesh, int element, double *largest)
 {
     const int *corners = mesh->elements[element];
     const struct vec3 centre = solid_quality_centre(mesh, element);
     double sum = 0.0;
     *largest = 0.0;
+    if (solid_mesh_is_sheet(corners)) {
+        *largest = 0.5 * vec3_norm(side_area(mesh, corners, solid_mesh_n_corners(corners),
+                                             centre, &sum));
+        return *largest * mesh->sheets[element].thickness;
+    }
     for (int s = 0; s < solid_mesh_n_sides(corners); s++) {
         int nodes[4];
         double share;
@@ -87,10 +92,50 @@ static const int AROUND_8[8][3] = {{1, 3, 4}, {2, 0, 5}, {3, 1, 6}, {0, 2, 7},
                                    {7, 5, 0}, {4, 6, 1}, {5, 7, 2}, {6, 4, 3}};
 static const int AROUND_4[4][3] = {{1, 2, 3}, {2, 0, 3}, {0, 1, 3}, {0, 2, 1}};
 
+/* The same of a sheet. */
+static double sheet_jacobian(const struct solid_mesh *mesh, int element, double *aspect)
+{
+    const int *nodes = mesh->elements[element];
+    const int n = solid_mesh_n_corners(nodes);
+    const double regular = n == 4 ? 1.0 : 2.0 / sqrt(3.0);
+    double least = HUGE_VAL, shortest = HUGE_VAL, longest = 0.0, share;
+    const struct vec3 area = side_area(mesh, nodes, n, mesh->nodes[nodes[0]], &share);
+    const double size = vec3_norm(area);
+    for (int c = 0; c < n; c++) {
+        const struct vec3 at = mesh->nodes[nodes[c]];
+        const struct vec3 next = vec3_sub(mesh->nodes[nodes[(c + 1) % n]], at),
+                          last = vec3_sub(mesh->nodes[nodes[(c + n - 1) % n]], at);
+        const double a = vec3_norm(next), b = vec3_norm(last);
+        const double turn = vec3_dot(vec3_cross(next, last), area);
+        const double scaled = a * b * size > 0.0 ? regular * turn / (a * b * size) : 0.0;
+        least = scaled < least ? scaled : least;
+        shortest = a < shortest ? a : shortest;
+        longest = a > longest ? a : longest;
+    }
+    *aspect = longest / shortest;
+    return least;
+}
+
+static double warp_of(const struct solid_mesh *mesh, int element)
+{
+    const int *nodes = mesh->elements[element];
+    double share;
+    if (!solid_mesh_is_sheet(nodes) || solid_mesh_n_corners(nodes) < 4)
+        return 0.0;
+    const struct vec3 twice = side_area(mesh, nodes, 4, mesh->nodes[nodes[0]], &share);
+    const double size = vec3_norm(twice);
+    const struct vec3 diagonals =
+        vec3_sub(vec3_add(mesh->nodes[nodes[0]], mesh->nodes[nodes[2]]),
+                 vec3_add(mesh->nodes[nodes[1]], mesh->nodes[nodes[3]]));
+    return size > 0.0 ? fabs(vec3_dot(diagonals, twice)) / (size * sqrt(0.5 * size)) : 0.0;
+}
+
 /* Scaled Jacobian of an element, and its longest over its shortest edge. */
 static double jacobian_of(const struct solid_mesh *mesh, int element, double *aspect)
 {
     const int *nodes = mesh->elements[element];
+    if (solid_mesh_is_sheet(nodes))
+        return sheet_jacobian(mesh, element, aspect);
     const int n = solid_mesh_n_corners(nodes);
     const double regular = n == 8 ? 1.0 : sqrt(2.0); /* over the volume of three edges */
     double least = HUGE_VAL, shortest = HUGE_VAL, longest = 0.0;
@@ -146,9 +191,24 @@ static void add_element(struct solid_quality *quality, const struct solid_mesh *
 {
     double aspect;
     const double jacobian = jacobian_of(mesh, e, &aspect);
-    const bool six_sided = solid_mesh_n_corners(mesh->elements[e]) == 8;
-    quality->n_hexahedra += six_sided;
-    quality->n_tetrahedra += !six_sided;
+    const int n = solid_mesh_n_corners(mesh->elements[e]);
+    const double warp = warp_of(mesh, e);
+    if (solid_mesh_is_sheet(mesh->elements[e])) {
+        const double thickness = mesh->sheets[e].thickness;
+        quality->n_quads += n == 4;
+        quality->n_triangles += n == 3;
+        quality->thickness_least =
+            thickness < quality->thickness_least ? thickness : quality->thickness_least;
+        quality->thickness_most =
+            thickness > quality->thickness_most ? thickness : quality->thickness_most;
+    } else {
+        quality->n_hexahedra += n == 8;
+        quality->n_tetrahedra += n == 4;
+    }
+    if (warp > quality->warp) {
+        quality->warp = warp;
+        quality->warp_worst = e;
+    }
     quality->volume += solid_quality_volume(mesh, e);
     quality->jacobian_mean += jacobian / (double)mesh->n_elements;
     if (!(aspect <= quality->aspect)) {
@@ -168,6 +228,7 @@ struct solid_quality solid_quality_of(const struct solid_mesh *mesh)
                                     .low = {HUGE_VAL, HUGE_VAL, HUGE_VAL},
                                     .high = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL},
                                     .jacobian_least = HUGE_VAL,
+                                    .thickness_least = HUGE_VAL,
                                     .n_parts = count_parts(mesh)};
     for (int k = 0; k < mesh->n_nodes; k++) {
         const struct vec3 x = mesh->nodes[k];
@@ -288,7 +349,7 @@ static void find_folded(struct finder *finder)
     char name[TEXT];
     for (int e = 0; e < mesh->n_elements; e++)
         if (has_node_twice(mesh->elements[e]))
-            find(finder, "%s has a node twice; 8 or 4 different ones are expected",
+            find(finder, "%s has a node twice; different ones are expected",
                  element_name(finder, e, name));
     end_kind(finder, "elements with a node twice");
     for (int e = 0; e < mesh->n_elements; e++) {
@@ -296,6 +357,15 @@ static void find_folded(struct finder *finder)
         const double volume = measure(mesh, e, &largest);
         const double span = largest * sqrt(largest);
         const double corner = jacobian_of(mesh, e, &aspect);
+        if (solid_mesh_is_sheet(mesh->elements[e])) {
+            if (!(corner > FLAT) && !has_node_twice(mesh->elements[e]))
+                find(
+                    finder,
+                    "%s has no area or is folded, at a corner its scaled Jacobian is %.2g; one "
+                    "above 0 is expected",
+                    element_name(finder, e, name), corner);
+            continue;
+        }
         if (!(volume > FLAT * span) && !has_node_twice(mesh->elements[e]))
             find(finder,
                  volume < -FLAT * span ? "%s is flipped, its volume is %.3g m3; nodes "
@@ -386,6 +456,8 @@ static struct edge *surface_edges(const struct solid_mesh *mesh, int *n)
     *n = 0;
     for (int k = 0; k < n_sides; k++) {
         int nodes[4];
+        if (solid_mesh_is_sheet(mesh->elements[sides[k].element]))
+            continue; /* may end, and meet several */
         const int m =
             solid_mesh_side_nodes(mesh->elements[sides[k].element], sides[k].side, nodes);
         for (int c = 0; c < m; c++) {

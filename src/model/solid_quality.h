@@ -1,5 +1,5 @@
 /*
- * What is wrong with the mesh of a solid, and how good it is.
+ * What is wrong with the mesh of a body that deforms, and how good it is.
  */
 #ifndef TREMIE_MODEL_SOLID_QUALITY_H
 #define TREMIE_MODEL_SOLID_QUALITY_H
@@ -11,7 +11,7 @@ struct mistakes;
 struct solid_mesh;
 
 struct solid_quality {
-    int n_hexahedra, n_tetrahedra;
+    int n_hexahedra, n_tetrahedra, n_quads, n_triangles;
     int n_sides;           /* on the surface */
     int n_parts;           /* that have no node in common */
     double volume, area;   /* [m3], [m2] */
@@ -19,9 +19,14 @@ struct solid_quality {
     double aspect;         /* largest of longest over shortest edge [-] */
     /* Scaled Jacobian: of the three edges at a corner, their volume over that of the most
      * regular corner with edges so long: 1 for a cube and a regular tetrahedron, 0 for what is
-     * flat.  Of an element that of its worst corner. */
+     * flat; of a sheet likewise the area of two, 1 for a rectangle and a regular triangle.  Of
+     * an element that of its worst corner. */
     double jacobian_least, jacobian_mean; /* [-] */
     int aspect_worst, jacobian_worst;     /* such elements */
+    double warp;                          /* of quads: most that a corner is off the plane of
+                                             the others, over the root of the area [-] */
+    int warp_worst;
+    double thickness_least, thickness_most; /* of sheets [m] */
 };
 
 struct solid_quality solid_quality_of(const struct solid_mesh *mesh);

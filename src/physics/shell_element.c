@@ -92,6 +92,18 @@ struct shell_element_state shell_element_begin(double thickness,
                                         .across = shell_law_of(material).across};
 }
 
+double shell_element_mises(const struct shell_element_state *shell,
+                           enum solid_element_shape shape, int layers)
+{
+    double most = 0.0;
+    for (int l = 0; l < (shell_element_turns(shape) ? layers : 1); l++) {
+        const double *s = shell->layer[l];
+        const double square = s[0] * s[0] - s[0] * s[1] + s[1] * s[1] + 3.0 * (s[2] * s[2]);
+        most = square > most ? square : most;
+    }
+    return sqrt(most);
+}
+
 double shell_element_energy(enum solid_element_shape shape,
                             const struct solid_element_state *state,
                             const struct shell_element_state *shell, int layers,

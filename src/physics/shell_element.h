@@ -52,6 +52,9 @@ double shell_element_facing(enum solid_element_shape shape, double x[][3], doubl
 /* Inertia of a corner's share of the mass against turning, over that share [m2]: as of the
  * thickness, or more where that would limit the step.  (13.15) */
 double shell_element_inertia(enum solid_element_shape shape, double x[][3], double thickness);
+/* Von Mises's equivalent stress, the most of all layers; shear across is not in it [Pa]. */
+double shell_element_mises(const struct shell_element_state *shell,
+                           enum solid_element_shape shape, int layers);
 /* Energy that stress holds in the element [J]. */
 double shell_element_energy(enum solid_element_shape shape,
                             const struct solid_element_state *state,

@@ -15,27 +15,23 @@
 #include "run/node_springs.h"
 #include "run/simulation.h"
 #include "solid/solid_limits.h"
+#include "solid/solid_plan.h"
 
 /* ---- Building
  * --------------------------------------------------------------------------------- */
 
-static void build_solid(struct solid *solid, const struct solid_mesh *mesh,
-                        const struct job_body *body, const struct job_material *from,
-                        enum isa isa)
+/* A job's material as elements have it; `points` has room for all of its table. */
+static struct solid_material material_of(const struct job_body *body,
+                                         const struct job_material *from,
+                                         struct solid_yield_point *points)
 {
-    enum solid_element_shape *shapes = array_allocate((size_t)mesh->n_elements, sizeof *shapes);
-    for (int e = 0; e < mesh->n_elements; e++)
-        shapes[e] = solid_mesh_n_corners(mesh->elements[e]) == 8 ? SOLID_ELEMENT_HEXAHEDRON
-                                                                 : SOLID_ELEMENT_TETRAHEDRON;
-    const struct solid_yield_point line = {0.0, from->yield};
-    struct solid_yield_point *points =
-        array_allocate((size_t)from->n_hardening_table, sizeof *points);
+    const bool stiff = body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS;
+    const double held = body->solid.hourglass.coefficient;
+    points[0] = (struct solid_yield_point){0.0, from->yield};
     for (int k = 0; k < from->n_hardening_table; k++)
         points[k] = (struct solid_yield_point){from->hardening_table[k].strain,
                                                from->hardening_table[k].stress};
-    const bool stiff = body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS;
-    const double held = body->solid.hourglass.coefficient;
-    const struct solid_material material = {
+    return (struct solid_material){
         .density = from->density,
         .young = from->young,
         .poisson = from->poisson,
@@ -43,16 +39,35 @@ static void build_solid(struct solid *solid, const struct solid_mesh *mesh,
         .hourglass_stiffness = stiff ? held : 0.0,
         .hourglass_viscosity = stiff ? 0.0 : held,
         .n_yield = from->n_hardening_table > 0 ? from->n_hardening_table : from->yield > 0.0,
-        .yield = from->n_hardening_table > 0 ? points : &line,
+        .yield = points,
         .hardening = from->n_hardening_table > 0 ? 0.0 : from->hardening,
     };
+}
+
+static void build_solid(struct solid *solid, const struct solid_mesh *mesh,
+                        const struct job_body *body, const struct job_material *from,
+                        enum isa isa)
+{
+    const size_t n = (size_t)mesh->n_elements;
+    enum solid_element_shape *shapes = array_allocate(n, sizeof *shapes);
+    double *thickness = array_allocate(n, sizeof *thickness);
+    for (int e = 0; e < mesh->n_elements; e++) {
+        shapes[e] = solid_plan_shape(mesh, e);
+        thickness[e] = mesh->sheets != NULL ? mesh->sheets[e].thickness : 0.0;
+    }
+    struct solid_yield_point *points =
+        array_allocate((size_t)from->n_hardening_table + 1, sizeof *points);
+    const struct solid_material material = material_of(body, from, points);
     const struct solid_parts parts = {.n_nodes = mesh->n_nodes,
                                       .places = (double(*)[3])mesh->nodes,
                                       .n_elements = mesh->n_elements,
                                       .shapes = shapes,
-                                      .corners = mesh->elements};
+                                      .corners = mesh->elements,
+                                      .thickness = mesh->sheets != NULL ? thickness : NULL,
+                                      .layers = body->sheet.layers};
     solid_create(solid, &parts, 1, &material, isa);
     free(shapes);
+    free(thickness);
     free(points);
 }
 
@@ -63,6 +78,13 @@ static void add_support(struct solid *solid, const struct solid_condition *condi
         [SOLID_CONDITION_DISPLACEMENT] = SOLID_SUPPORT_DISPLACEMENT,
         [SOLID_CONDITION_VELOCITY] = SOLID_SUPPORT_VELOCITY};
     struct solid_table table = solid_table_of(condition);
+    for (int d = 0; d < 3; d++)
+        if ((condition->turns >> d & 1) != 0)
+            solid_supports_add_turn(&solid->supports, SOLID_SUPPORT_FIXED, d, &table,
+                                    condition->set->n_nodes, condition->set->nodes);
+    if (condition->kind == SOLID_CONDITION_MOTION)
+        solid_supports_add_motion(&solid->supports, condition->n_motions, condition->motions,
+                                  condition->set->n_nodes, condition->set->nodes);
     for (int d = 0; d < 3; d++)
         if ((condition->directions >> d & 1) != 0)
             solid_supports_add(&solid->supports, kinds[condition->kind], d, &table,
@@ -145,27 +167,25 @@ static void build_body(struct deform *deform, const struct simulation *sim, int 
     const struct job_body *body = &sim->job->bodies[b];
     struct body_skin *skin = sim->bodies.list[b].skin;
     struct solid_mesh built;
-    int n_vertices, *nodes, (*facets)[4];
     *own = (struct deform_body){.body = b,
                                 .first_node = deform->n_nodes,
                                 .first_element = deform->n_elements,
                                 .first_ball = deform->n_balls};
     const struct solid_mesh *mesh = solid_mesh_borrow(body, &built);
-    solid_mesh_skin(mesh, &n_vertices, &nodes, &facets);
-    CHECK(n_vertices == sim->bodies.list[b].mesh.n_corners, "a skin of %d vertices",
-          n_vertices);
     build_solid(&own->solid, mesh, body, &sim->job->materials[body->material], isa);
     prescribe(&own->solid, mesh, body);
     deform_share_init(&own->share, sim->comm, &own->solid);
-    deform_skin_init(&own->skin, nodes, &sim->bodies.list[b]);
-    for (int v = 0; v < n_vertices; v++)
-        skin->inverse_mass[v] = 1.0 / own->solid.mass[nodes[v]];
+    deform_skin_init(&own->skin, mesh, &sim->bodies.list[b]);
+    deform_share_mark_rings(own);
+    for (int v = 0; v < sim->bodies.list[b].mesh.n_corners; v++)
+        skin->inverse_mass[v] = 1.0 / own->solid.mass[own->skin.nodes[v]];
     if (body->solid.touches.what != JOB_TOUCHES_SPHERES)
         add_balls(deform, own, mesh, &sim->bodies.list[b]);
     deform_skin_renew(own, &sim->bodies.list[b]);
     deform->n_nodes += own->solid.n_nodes;
     deform->n_elements += own->solid.n_elements;
-    free(facets);
+    deform->sheets = deform->sheets || own->solid.shell != NULL;
+    deform->turns = deform->turns || own->solid.turns.n_nodes > 0;
     solid_mesh_clear(&built);
 }
 
@@ -177,7 +197,7 @@ void deform_init(struct deform *deform, const struct simulation *sim, enum isa i
     deform->pushing = array_allocate((size_t)sim->comm->n_ranks, sizeof *deform->pushing);
     comm_mail_init(&deform->mail, sim->comm);
     for (int b = 0; b < sim->bodies.n; b++)
-        if (sim->job->bodies[b].model == JOB_MODEL_SOLID)
+        if (job_deforms(&sim->job->bodies[b]))
             build_body(deform, sim, b, isa);
 }
 
@@ -230,21 +250,6 @@ static void explain(const struct simulation *sim, const struct deform_body *defo
              fault.place.y, fault.place.z, failures[fault.failure]);
 }
 
-/* Contacts' forces on the nodes that are moved here. */
-static void take_forces(struct deform_body *deform, const struct body_skin *skin, int n_corners)
-{
-    for (int k = 0; k < deform->skin.n_corners; k++) {
-        const int v = deform->skin.vertices[k], node = deform->skin.nodes[v];
-        for (int x = 0; deform->solid.moves[node] && x < 3; x++)
-            deform->solid.contact[node][x] = exact_sum_value(&skin->force[v][x]);
-    }
-    for (int p = n_corners; p < deform->skin.n_points; p++) {
-        const int node = deform->skin.nodes[p];
-        for (int x = 0; deform->solid.moves[node] && x < 3; x++)
-            deform->solid.contact[node][x] = exact_sum_value(&skin->force[p][x]);
-    }
-}
-
 void deform_plan(struct simulation *sim)
 {
     deform_share_push(sim);
@@ -252,8 +257,7 @@ void deform_plan(struct simulation *sim)
     for (int k = 0; k < sim->deform.n; k++) {
         struct deform_body *deform = &sim->deform.list[k];
         struct solid *solid = &deform->solid;
-        take_forces(deform, sim->bodies.list[deform->body].skin,
-                    sim->bodies.list[deform->body].mesh.n_corners);
+        deform_skin_take_forces(deform, &sim->bodies.list[deform->body]);
         solid->gravity[0] = sim->gravity.x;
         solid->gravity[1] = sim->gravity.y;
         solid->gravity[2] = sim->gravity.z;

@@ -1,5 +1,6 @@
 /*
- * Bodies that deform: solids of finite elements (solid/solid.h) in the step.
+ * Bodies that deform: solids, shells and membranes of finite elements (solid/solid.h) in the
+ * step.
  *
  * Their nodes belong to subdomains, as spheres do (deform_share.h).  A body's surface is the
  * skin that contacts push (deform_skin.h, model/body.h): its vertices are nodes.
@@ -35,9 +36,10 @@ struct deform {
     struct deform_body *list;
     int64_t n_nodes, n_elements; /* of all */
     int n_balls;
-    bool failed;    /* some element here has, in this step */
-    bool hourglass; /* some solid has too much energy in hourglass modes */
-    double spent;   /* share of their allowances that surfaces have used in the last step */
+    bool sheets, turns; /* has some body shells or membranes; does some node turn? */
+    bool failed;        /* some element here has, in this step */
+    bool hourglass;     /* some solid has too much energy in hourglass modes */
+    double spent;       /* share of their allowances that surfaces have used in the last step */
     int n_near,
         *near; /* ranks with copies of nodes moved here, or whose nodes have copies here */
     int n_pushing, *pushing; /* those of which some node may be touched on the other */

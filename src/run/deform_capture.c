@@ -98,7 +98,7 @@ static void add_nodes(const struct simulation *sim, struct solid *solid,
 static void put_element(const struct solid *solid, int e, struct table *table)
 {
     const struct solid_element_state *state = &solid->state[e];
-    const double mises = solid_element_mises(state);
+    const double mises = solid_mises(solid, e);
     const int64_t id = e;
     double principal[3];
     principal_values(state->stress, principal);
@@ -122,10 +122,8 @@ static int32_t *part_of(struct snapshot_rows *part, int64_t n_most, int width)
     return part->rows;
 }
 
-static void add_corners(const struct solid *solid, int n_tetrahedra,
-                        struct snapshot_solid *shown)
+static void add_corners(const struct solid *solid, int width, struct snapshot_solid *shown)
 {
-    const int width = n_tetrahedra == solid->n_elements ? 4 : SOLID_ELEMENT_CORNERS;
     int32_t *corners = part_of(&shown->parts[SNAPSHOT_CORNERS], solid->n_elements, width);
     shown->parts[SNAPSHOT_CORNERS].n = solid->n_elements;
     for (int e = 0; e < solid->n_elements; e++)
@@ -136,12 +134,15 @@ static void add_corners(const struct solid *solid, int n_tetrahedra,
 /* As XDMF lists elements of several kinds. */
 static void add_cells(const struct solid *solid, struct snapshot_solid *shown)
 {
-    enum { TETRAHEDRON = 6, HEXAHEDRON = 9 };
+    enum { TRIANGLE = 4, QUAD = 5, TETRAHEDRON = 6, HEXAHEDRON = 9 };
     struct snapshot_rows *part = &shown->parts[SNAPSHOT_CELLS];
     int32_t *cells = part_of(part, (int64_t)solid->n_elements * (1 + SOLID_ELEMENT_CORNERS), 1);
     for (int e = 0; e < solid->n_elements; e++) {
         const int n = solid_element_corners(solid->shape[e]);
-        cells[part->n++] = n == SOLID_ELEMENT_CORNERS ? HEXAHEDRON : TETRAHEDRON;
+        if (shell_element_is(solid->shape[e]))
+            cells[part->n++] = n == 4 ? QUAD : TRIANGLE;
+        else
+            cells[part->n++] = n == 4 ? TETRAHEDRON : HEXAHEDRON;
         for (int c = 0; c < n; c++)
             cells[part->n++] = solid->corners[e][c];
     }
@@ -165,16 +166,18 @@ static void add_mesh(const struct solid *solid, const struct solid_surface *surf
                      struct snapshot_solid *shown)
 {
     struct snapshot_rows *reference = &shown->parts[SNAPSHOT_REFERENCE];
-    int n_tetrahedra = 0;
-    for (int e = 0; e < solid->n_elements; e++)
+    int n_tetrahedra = 0, n_hexahedra = 0;
+    for (int e = 0; e < solid->n_elements; e++) {
         n_tetrahedra += solid->shape[e] == SOLID_ELEMENT_TETRAHEDRON;
+        n_hexahedra += solid->shape[e] == SOLID_ELEMENT_HEXAHEDRON;
+    }
     reference->n = solid->n_nodes;
     reference->rows = array_allocate((size_t)solid->n_nodes, sizeof *solid->reference);
     memcpy(reference->rows, solid->reference,
            (size_t)solid->n_nodes * sizeof *solid->reference);
-    add_corners(solid, n_tetrahedra, shown);
+    add_corners(solid, n_hexahedra > 0 ? SOLID_ELEMENT_CORNERS : 4, shown);
     add_triangles(surface, shown);
-    shown->mixed = n_tetrahedra > 0 && n_tetrahedra < solid->n_elements;
+    shown->mixed = n_tetrahedra < solid->n_elements && n_hexahedra < solid->n_elements;
     if (shown->mixed)
         add_cells(solid, shown);
 }

@@ -12,7 +12,7 @@
 #include "run/simulation.h"
 
 /* Why a rank has a copy of a node. */
-enum { FOR_ELEMENT = 1, TOUCHED = 2 };
+enum { FOR_ELEMENT = 1, TOUCHED = 2, FOR_NORMAL = 4 };
 
 void deform_share_init(struct deform_share *share, const struct comm *comm, struct solid *solid)
 {
@@ -29,6 +29,21 @@ void deform_share_init(struct deform_share *share, const struct comm *comm, stru
     for (int k = 0; k < solid->n_here; k++)
         share->copy[solid->here[k]] = FOR_ELEMENT;
     free(moves);
+}
+
+void deform_share_mark_rings(struct deform_body *deform)
+{
+    const struct skin *shape = &deform->skin.shape;
+    unsigned char *copy = deform->share.copy;
+    for (int r = 0; r < shape->n_rings; r++) {
+        const struct skin_ring *ring = &shape->rings[r];
+        const bool needed = (copy[ring->node] & (FOR_ELEMENT | TOUCHED)) != 0;
+        for (int k = ring->begin; needed && k < ring->end; k++) {
+            const int *corners = shape->sheets[shape->around[k]].corners;
+            for (int c = 0; c < 4 && corners[c] >= 0; c++)
+                copy[corners[c]] |= FOR_NORMAL;
+        }
+    }
 }
 
 void deform_share_clear(struct deform_share *share, const struct comm *comm)
@@ -70,10 +85,10 @@ static void pack_item(struct simulation *sim, int to, struct item item)
     comm_mail_pack(&sim->deform.mail, to, &item, sizeof item);
     if (item.kind == FACE)
         return;
-    deform_state_pack(&sim->deform.list[item.body].solid, (enum deform_state_kind)item.kind,
-                      item.index, record);
+    deform_state_pack(&sim->deform, &sim->deform.list[item.body].solid,
+                      (enum deform_state_kind)item.kind, item.index, record);
     comm_mail_pack(&sim->deform.mail, to, record,
-                   deform_state_size((enum deform_state_kind)item.kind));
+                   deform_state_size(&sim->deform, (enum deform_state_kind)item.kind));
 }
 
 /* ---- Which faces spheres may touch
@@ -238,10 +253,9 @@ static void take_items(struct simulation *sim)
                        &deform->share.touched_capacity, item.index);
                 continue;
             }
-            comm_mail_unpack(mail, q, record,
-                             deform_state_size((enum deform_state_kind)item.kind));
-            deform_state_unpack(&deform->solid, (enum deform_state_kind)item.kind, item.index,
-                                record);
+            const enum deform_state_kind kind = (enum deform_state_kind)item.kind;
+            comm_mail_unpack(mail, q, record, deform_state_size(&sim->deform, kind));
+            deform_state_unpack(&sim->deform, &deform->solid, kind, item.index, record);
         }
 }
 
@@ -318,6 +332,7 @@ static void request_copies(struct simulation *sim, int b)
         share->copy[solid->here[k]] = FOR_ELEMENT;
     for (int t = 0; t < share->n_touched; t++)
         mark_face(deform, mesh, share->touched[t]);
+    deform_share_mark_rings(deform);
     for (int k = 0; k < deform->n_balls; k++)
         for (int m = 0; solid->moves[deform->balls[k].outer] && m < deform->balls[k].n_inner;
              m++)
@@ -452,6 +467,9 @@ void deform_share_tell(struct simulation *sim)
                 comm_mail_pack(mail, deform->near[k], solid_place(solid, peer->told[m]), HALF);
                 comm_mail_pack(mail, deform->near[k], solid_velocity(solid, peer->told[m]),
                                HALF);
+                if (solid->turns.n_nodes > 0)
+                    comm_mail_pack(mail, deform->near[k],
+                                   solid_turn_spin(&solid->turns, peer->told[m]), HALF);
             }
         }
     exchange(sim, deform->n_near, deform->near);
@@ -465,6 +483,9 @@ void deform_share_tell(struct simulation *sim)
                                  HALF);
                 comm_mail_unpack(mail, deform->near[k], solid_velocity(solid, peer->heard[m]),
                                  HALF);
+                if (solid->turns.n_nodes > 0)
+                    comm_mail_unpack(mail, deform->near[k],
+                                     solid_turn_spin(&solid->turns, peer->heard[m]), HALF);
             }
         }
 }

@@ -52,6 +52,9 @@ struct deform_share {
 /* At first ranks move as many nodes each, by their numbers. */
 void deform_share_init(struct deform_share *share, const struct comm *comm,
                        struct solid *solid);
+/* Vertices of sheets are where normals of all elements around their nodes say, so what has
+ * such a node for an element or a touch needs these elements' nodes, too.  Local. */
+void deform_share_mark_rings(struct deform_body *deform);
 void deform_share_clear(struct deform_share *share, const struct comm *comm);
 
 /* Is the node here, moved or as a copy?  Local. */

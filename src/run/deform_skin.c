@@ -6,23 +6,40 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/report.h"
 #include "run/simulation.h"
 
-void deform_skin_init(struct deform_skin *skin, int *nodes, const struct body *body)
+void deform_skin_init(struct deform_skin *skin, const struct solid_mesh *mesh,
+                      const struct body *body)
 {
-    const struct mesh *mesh = &body->mesh;
-    *skin = (struct deform_skin){.nodes = nodes, .n_points = mesh->n_corners};
-    skin->vertices = array_allocate((size_t)mesh->n_vertices, sizeof *skin->vertices);
-    skin->is_here = array_allocate((size_t)mesh->n_vertices, sizeof *skin->is_here);
-    skin->faces = array_allocate((size_t)mesh->n_faces, sizeof *skin->faces);
+    const size_t n_vertices = (size_t)body->mesh.n_vertices;
+    *skin = (struct deform_skin){.n_points = body->mesh.n_corners};
+    skin_build(&skin->shape, mesh);
+    CHECK(skin->shape.n_vertices == body->mesh.n_corners, "a skin of %d vertices",
+          skin->shape.n_vertices);
+    skin->nodes = array_allocate((size_t)skin->n_points, sizeof *skin->nodes);
+    if (skin->n_points > 0)
+        memcpy(skin->nodes, skin->shape.nodes, (size_t)skin->n_points * sizeof *skin->nodes);
+    skin->vertices = array_allocate(n_vertices, sizeof *skin->vertices);
+    skin->is_here = array_allocate(n_vertices, sizeof *skin->is_here);
+    skin->faces = array_allocate((size_t)body->mesh.n_faces, sizeof *skin->faces);
+    skin->sheets = array_allocate((size_t)skin->shape.n_sheets, sizeof *skin->sheets);
+    skin->normals = array_allocate((size_t)skin->shape.n_sheets, sizeof *skin->normals);
+    skin->rings = array_allocate((size_t)skin->shape.n_rings, sizeof *skin->rings);
+    skin->arms = array_allocate((size_t)skin->shape.n_rings, sizeof *skin->arms);
 }
 
 void deform_skin_clear(struct deform_skin *skin)
 {
+    skin_clear(&skin->shape);
     free(skin->nodes);
     free(skin->vertices);
     free(skin->is_here);
     free(skin->faces);
+    free(skin->sheets);
+    free(skin->normals);
+    free(skin->rings);
+    free(skin->arms);
     *skin = (struct deform_skin){0};
 }
 
@@ -62,16 +79,55 @@ static void place_mean(struct mesh *mesh, int v)
     mesh->place[v] = mean;
 }
 
+/* Arms of the sheets that are here. */
+static void turn_arms(const struct deform_body *deform)
+{
+    const struct deform_skin *skin = &deform->skin;
+    const size_t stride = sizeof *deform->solid.node / sizeof(double);
+    for (int k = 0; k < skin->n_sheets; k++)
+        skin->normals[skin->sheets[k]] =
+            skin_normal(&skin->shape.sheets[skin->sheets[k]], deform->solid.node->lane, stride);
+    for (int k = 0; k < skin->n_rings; k++)
+        skin->arms[skin->rings[k]] = skin_arm(&skin->shape, skin->rings[k], skin->normals);
+}
+
+/* From the vertex's node to it [m]. */
+static struct vec3 arm_of(const struct deform_skin *skin, int v)
+{
+    const int k = v - skin->shape.n_plain;
+    if (k < 0)
+        return (struct vec3){0.0, 0.0, 0.0};
+    return vec3_scale(k % 2 == 0 ? 1.0 : -1.0, skin->arms[k / 2]);
+}
+
+static struct vec3 place_of(const struct deform_body *deform, int v)
+{
+    return vec3_add(vec3_of(solid_place(&deform->solid, deform->skin.nodes[v])),
+                    arm_of(&deform->skin, v));
+}
+
+static struct vec3 velocity_of(const struct deform_body *deform, int v)
+{
+    const struct solid_turns *turns = &deform->solid.turns;
+    const int node = deform->skin.nodes[v];
+    const struct vec3 velocity = vec3_of(solid_velocity(&deform->solid, node));
+    if (turns->n_nodes == 0 || v < deform->skin.shape.n_plain)
+        return velocity;
+    return vec3_add(
+        velocity, vec3_cross(vec3_of(solid_turn_spin(turns, node)), arm_of(&deform->skin, v)));
+}
+
 void deform_skin_place(const struct deform_body *deform, struct body *body)
 {
     const struct deform_skin *skin = &deform->skin;
     struct mesh *mesh = &body->mesh;
     double speed2_max = 0.0;
+    turn_arms(deform);
     for (int k = 0; k < skin->n_corners; k++) {
-        const int v = skin->vertices[k], node = skin->nodes[v];
-        const struct vec3 velocity = vec3_of(solid_velocity(&deform->solid, node));
+        const int v = skin->vertices[k];
+        const struct vec3 velocity = velocity_of(deform, v);
         const double speed2 = vec3_dot(velocity, velocity);
-        mesh->place[v] = vec3_of(solid_place(&deform->solid, node));
+        mesh->place[v] = place_of(deform, v);
         body->skin->velocity[v] = velocity;
         memset(body->skin->force[v], 0, sizeof body->skin->force[v]);
         speed2_max = speed2 > speed2_max ? speed2 : speed2_max;
@@ -83,6 +139,43 @@ void deform_skin_place(const struct deform_body *deform, struct body *body)
     for (int k = 0; k < skin->n_faces; k++)
         mesh_update_face(mesh, skin->faces[k]);
     body->speed_max = sqrt(speed2_max);
+}
+
+/* Adds up what pushes a node: several vertices may be its own, in the order of their numbers.
+ * */
+static void take_force(struct solid *solid, int node, struct vec3 arm,
+                       const struct exact_sum sums[3])
+{
+    const double f[3] = {exact_sum_value(&sums[0]), exact_sum_value(&sums[1]),
+                         exact_sum_value(&sums[2])};
+    const struct vec3 moment = vec3_cross(arm, vec3_of(f));
+    for (int x = 0; x < 3; x++)
+        solid->contact[node][x] += f[x];
+    if (solid->turns.n_nodes == 0 || !(solid->turns.inertia[node] > 0.0))
+        return;
+    solid->turns.contact[node][0] += moment.x;
+    solid->turns.contact[node][1] += moment.y;
+    solid->turns.contact[node][2] += moment.z;
+}
+
+void deform_skin_take_forces(struct deform_body *deform, const struct body *body)
+{
+    const struct deform_skin *skin = &deform->skin;
+    struct solid *solid = &deform->solid;
+    const int n_corners = body->mesh.n_corners, n_inner = skin->n_points - n_corners;
+    for (int k = 0; k < skin->n_corners; k++) {
+        const int node = skin->nodes[skin->vertices[k]];
+        memset(solid->contact[node], 0, sizeof solid->contact[node]);
+        if (solid->turns.n_nodes > 0)
+            memset(solid->turns.contact[node], 0, sizeof solid->turns.contact[node]);
+    }
+    for (int p = n_corners; p < skin->n_points; p++)
+        memset(solid->contact[skin->nodes[p]], 0, sizeof *solid->contact);
+    for (int k = 0; k < skin->n_corners + n_inner; k++) {
+        const int v = k < skin->n_corners ? skin->vertices[k] : n_corners + k - skin->n_corners;
+        if (solid->moves[skin->nodes[v]])
+            take_force(solid, skin->nodes[v], arm_of(skin, v), body->skin->force[v]);
+    }
 }
 
 /* A face without a normal is not found, wherever its borders may be. */
@@ -104,11 +197,43 @@ void deform_skin_forget(const struct deform_skin *skin, struct mesh *mesh)
     free(keep);
 }
 
-static void list_vertices(const struct deform_body *deform, const struct mesh *mesh)
+static bool has_sheet(const struct deform_body *deform, int s)
+{
+    const int *corners = deform->skin.shape.sheets[s].corners;
+    for (int c = 0; c < 4 && corners[c] >= 0; c++)
+        if (!deform_share_has(deform, corners[c]))
+            return false;
+    return true;
+}
+
+static void list_rings(struct deform_body *deform)
+{
+    struct deform_skin *skin = &deform->skin;
+    const struct skin *shape = &skin->shape;
+    bool *here = array_allocate((size_t)shape->n_sheets, sizeof *here);
+    skin->n_sheets = skin->n_rings = 0;
+    for (int s = 0; s < shape->n_sheets; s++) {
+        here[s] = has_sheet(deform, s);
+        if (here[s])
+            skin->sheets[skin->n_sheets++] = s;
+    }
+    for (int r = 0; r < shape->n_rings; r++) {
+        bool all = true;
+        for (int k = shape->rings[r].begin; k < shape->rings[r].end; k++)
+            all = all && here[shape->around[k]];
+        skin->is_here[shape->n_plain + 2 * r] = skin->is_here[shape->n_plain + 2 * r + 1] = all;
+        if (all)
+            skin->rings[skin->n_rings++] = r;
+    }
+    free(here);
+}
+
+static void list_vertices(struct deform_body *deform, const struct mesh *mesh)
 {
     const struct deform_skin *skin = &deform->skin;
-    for (int v = 0; v < mesh->n_corners; v++)
+    for (int v = 0; v < skin->shape.n_plain; v++)
         skin->is_here[v] = deform_share_has(deform, skin->nodes[v]);
+    list_rings(deform);
     for (int v = mesh->n_corners; v < mesh->n_vertices; v++) {
         skin->is_here[v] = 1;
         for (int k = 0; k < 4; k++)
@@ -142,10 +267,10 @@ double deform_skin_speed(const struct deform_body *deform)
 {
     double speed2_max = 0.0;
     for (int k = 0; k < deform->skin.n_corners; k++) {
-        const int node = deform->skin.nodes[deform->skin.vertices[k]];
-        if (!deform->solid.moves[node])
+        const int v = deform->skin.vertices[k];
+        if (!deform->solid.moves[deform->skin.nodes[v]])
             continue;
-        const struct vec3 velocity = vec3_of(solid_velocity(&deform->solid, node));
+        const struct vec3 velocity = velocity_of(deform, v);
         const double speed2 = vec3_dot(velocity, velocity);
         speed2_max = speed2 > speed2_max ? speed2 : speed2_max;
     }
@@ -178,7 +303,7 @@ static void show(const struct deform_body *deform, const struct comm *comm, stru
     int own = next[comm->rank];
     for (int v = 0; v < mesh->n_corners; v++)
         if (deform->share.owner[deform->skin.nodes[v]] == comm->rank)
-            places[own++] = vec3_of(solid_place(&deform->solid, deform->skin.nodes[v]));
+            places[own++] = place_of(deform, v);
     comm_gather_parts(comm, places, sizes);
     for (int v = 0; v < mesh->n_corners; v++)
         mesh->place[v] = places[next[deform->share.owner[deform->skin.nodes[v]]]++];

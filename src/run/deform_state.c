@@ -11,10 +11,13 @@
 #include "store/checkpoint.h"
 #include "store/table.h"
 
-static int fields_of(enum deform_state_kind kind, const struct field **fields)
+static int fields_of(const struct deform *deform, enum deform_state_kind kind,
+                     const struct field **fields)
 {
     *fields = kind == DEFORM_STATE_NODE ? solid_node_fields : solid_element_fields;
-    return kind == DEFORM_STATE_NODE ? SOLID_NODE_N_FIELDS : SOLID_ELEMENT_N_FIELDS;
+    if (kind == DEFORM_STATE_NODE)
+        return deform->turns ? SOLID_NODE_N_FIELDS : SOLID_NODE_N_PLAIN;
+    return deform->sheets ? SOLID_ELEMENT_N_FIELDS : SOLID_ELEMENT_N_PLAIN;
 }
 
 static struct field_view view_of(const struct solid *solid, enum deform_state_kind kind, int f)
@@ -23,10 +26,10 @@ static struct field_view view_of(const struct solid *solid, enum deform_state_ki
                                      : solid_element_view(solid, (enum solid_element_field)f);
 }
 
-size_t deform_state_size(enum deform_state_kind kind)
+size_t deform_state_size(const struct deform *deform, enum deform_state_kind kind)
 {
     const struct field *fields;
-    const int n = fields_of(kind, &fields);
+    const int n = fields_of(deform, kind, &fields);
     size_t size = 0;
     for (int f = 0; f < n; f++)
         size += field_size(&fields[f]);
@@ -34,26 +37,30 @@ size_t deform_state_size(enum deform_state_kind kind)
     return size;
 }
 
-void deform_state_pack(const struct solid *solid, enum deform_state_kind kind, int i,
-                       unsigned char *record)
+void deform_state_pack(const struct deform *deform, const struct solid *solid,
+                       enum deform_state_kind kind, int i, unsigned char *record)
 {
     const struct field *fields;
-    const int n = fields_of(kind, &fields);
+    const int n = fields_of(deform, kind, &fields);
     for (int f = 0; f < n; f++) {
         const struct field_view view = view_of(solid, kind, f);
-        memcpy(record, field_at(&view, i), field_size(&fields[f]));
+        if (view.base != NULL)
+            memcpy(record, field_at(&view, i), field_size(&fields[f]));
+        else
+            memset(record, 0, field_size(&fields[f]));
         record += field_size(&fields[f]);
     }
 }
 
-void deform_state_unpack(struct solid *solid, enum deform_state_kind kind, int i,
-                         const unsigned char *record)
+void deform_state_unpack(const struct deform *deform, struct solid *solid,
+                         enum deform_state_kind kind, int i, const unsigned char *record)
 {
     const struct field *fields;
-    const int n = fields_of(kind, &fields);
+    const int n = fields_of(deform, kind, &fields);
     for (int f = 0; f < n; f++) {
         const struct field_view view = view_of(solid, kind, f);
-        memcpy(field_at(&view, i), record, field_size(&fields[f]));
+        if (view.base != NULL)
+            memcpy(field_at(&view, i), record, field_size(&fields[f]));
         record += field_size(&fields[f]);
     }
 }
@@ -83,7 +90,7 @@ static void collect(struct table *table, const struct simulation *sim,
             if (!counts || id < begin || id >= end)
                 continue;
             memcpy(record, &id, sizeof id);
-            deform_state_pack(solid, kind, i, record + sizeof id);
+            deform_state_pack(&sim->deform, solid, kind, i, record + sizeof id);
             table_append(table, record, 1);
         }
     }
@@ -102,17 +109,20 @@ static void collect_elements(struct table *table, const void *from, int64_t begi
 
 int deform_state_tables(const struct simulation *sim, struct checkpoint_more *tables)
 {
+    const struct field *fields;
     if (sim->deform.n == 0)
         return 0;
+    int n = fields_of(&sim->deform, DEFORM_STATE_NODE, &fields);
     tables[DEFORM_STATE_NODE] = (struct checkpoint_more){.name = "nodes",
-                                                         .n_fields = SOLID_NODE_N_FIELDS,
-                                                         .fields = solid_node_fields,
+                                                         .n_fields = n,
+                                                         .fields = fields,
                                                          .n_ids = sim->deform.n_nodes,
                                                          .collect = collect_nodes,
                                                          .from = sim};
+    n = fields_of(&sim->deform, DEFORM_STATE_ELEMENT, &fields);
     tables[DEFORM_STATE_ELEMENT] = (struct checkpoint_more){.name = "elements",
-                                                            .n_fields = SOLID_ELEMENT_N_FIELDS,
-                                                            .fields = solid_element_fields,
+                                                            .n_fields = n,
+                                                            .fields = fields,
                                                             .n_ids = sim->deform.n_elements,
                                                             .collect = collect_elements,
                                                             .from = sim};
@@ -141,7 +151,7 @@ void deform_state_restore(struct simulation *sim, const struct checkpoint_more *
             const int n = rows_of(&sim->deform.list[k], (enum deform_state_kind)kind, &id);
             for (int i = 0; i < n; i++, id++)
                 if (is_here(&sim->deform.list[k], (enum deform_state_kind)kind, i))
-                    deform_state_unpack(solid, (enum deform_state_kind)kind, i,
+                    deform_state_unpack(&sim->deform, solid, (enum deform_state_kind)kind, i,
                                         table->records + (size_t)id * table->record_size +
                                             sizeof id);
         }

@@ -9,19 +9,21 @@
 #include <stddef.h>
 
 struct checkpoint_more;
+struct deform;
 struct simulation;
 struct solid;
 
 enum deform_state_kind { DEFORM_STATE_NODE, DEFORM_STATE_ELEMENT, DEFORM_STATE_N_KINDS };
-enum { DEFORM_STATE_MOST = 512 /* bytes of a record, at most */ };
+enum { DEFORM_STATE_MOST = 768 /* bytes of a record, at most */ };
 
-/* Bytes of a record. */
-size_t deform_state_size(enum deform_state_kind kind);
+/* Bytes of a record, of any body that deforms: where one has sheets, fields of sheets are in
+ * those of all, zero elsewhere. */
+size_t deform_state_size(const struct deform *deform, enum deform_state_kind kind);
 /* Writes node or element i as a record; reads it from one. */
-void deform_state_pack(const struct solid *solid, enum deform_state_kind kind, int i,
-                       unsigned char *record);
-void deform_state_unpack(struct solid *solid, enum deform_state_kind kind, int i,
-                         const unsigned char *record);
+void deform_state_pack(const struct deform *deform, const struct solid *solid,
+                       enum deform_state_kind kind, int i, unsigned char *record);
+void deform_state_unpack(const struct deform *deform, struct solid *solid,
+                         enum deform_state_kind kind, int i, const unsigned char *record);
 
 /* Tables of nodes and elements for checkpoints: two, none without solids. */
 int deform_state_tables(const struct simulation *sim, struct checkpoint_more *tables);

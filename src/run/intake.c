@@ -106,7 +106,7 @@ int intake_share(const struct comm *comm, const struct options *options, struct 
     if (size > 0)
         surface_file_share(job, comm);
     for (int b = 0; size > 0 && b < job->n_bodies; b++)
-        if (job->bodies[b].model == JOB_MODEL_SOLID)
+        if (job_deforms(&job->bodies[b]))
             (void)solid_mesh_keep(&job->bodies[b]);
     mistakes_clear(&mistakes);
     return size > 0 ? REPORT_FINISHED : REPORT_BAD_INPUT;

@@ -644,8 +644,10 @@ static void add_supports(struct observe_monitor **monitors, int *n, int *capacit
         struct solid_support *support = &deform->solid.supports.list[s];
         char owner[48];
         snprintf(owner, sizeof owner, "body_%d.support_%d", deform->body, s);
-        add_monitor(monitors, n, capacity, &support->force[support->direction], owner,
-                    forces[support->direction]);
+        for (int d = 0; d < 3; d++)
+            if (support->kind == SOLID_SUPPORT_MOTION ||
+                (d == support->direction && !support->turns))
+                add_monitor(monitors, n, capacity, &support->force[d], owner, forces[d]);
         if (support->kind != SOLID_SUPPORT_FIXED)
             add_monitor(monitors, n, capacity, &support->work, owner, "work");
     }

@@ -168,7 +168,7 @@ static void add_element(const struct solid *solid, int e, double share, struct e
                         double most[MOST])
 {
     const struct solid_element_state *state = &solid->state[e];
-    const double last[MOST] = {solid_element_mises(state), state->plastic_strain};
+    const double last[MOST] = {solid_mises(solid, e), state->plastic_strain};
     for (int k = 0; k < STRESSES; k++)
         exact_sum_add(&sums[k], share * state->stress[k]);
     for (int k = 0; k < MOST; k++) {

@@ -29,8 +29,8 @@ static char *plain_name(const char *set)
 
 static bool is_support(const struct job_boundary *asked)
 {
-    return asked->fixed != 0 || asked->n_displacements > 0 || asked->has_velocity ||
-           asked->n_velocities > 0;
+    return asked->fixed != 0 || asked->n_motions > 0 || asked->n_displacements > 0 ||
+           asked->has_velocity || asked->n_velocities > 0;
 }
 
 /* "plate.x_min", or "plate.x_min.3" where an item before item 3 has the name already.  The
@@ -53,7 +53,9 @@ static char *column_owner(const struct job_body *body, int item)
 static void add_columns(struct series *table, const struct job_body *body, int item)
 {
     const struct job_boundary *asked = &body->solid.boundary[item];
-    const int directions = asked->fixed != 0 ? asked->fixed : 1 << asked->direction;
+    const int directions = asked->n_motions > 0 ? 7
+                           : asked->fixed != 0  ? asked->fixed
+                                                : 1 << asked->direction;
     char *owner = column_owner(body, item), help[160];
     for (int d = 0; d < 3; d++) {
         if ((directions >> d & 1) == 0)
@@ -62,10 +64,13 @@ static void add_columns(struct series *table, const struct job_body *body, int i
                  "force of what %s set %.60s along %c, mean since the row before",
                  asked->fixed != 0 ? "holds" : "moves", asked->set, "xyz"[d]);
         series_add_column(table, "N", help, "%s.reaction_%c", owner, "xyz"[d]);
-        if (asked->fixed == 0)
+        if (asked->fixed == 0 && asked->n_motions == 0)
             series_add_column(table, "J", "work of what moves the set", "%s.work_%c", owner,
                               "xyz"[d]);
     }
+    if (asked->n_motions > 0)
+        series_add_column(table, "J", "work of the motion that the set follows", "%s.work",
+                          owner);
     free(owner);
 }
 
@@ -81,7 +86,22 @@ void reactions_add_columns(const struct simulation *sim, struct series *table)
 
 /* --------------------------------------------------------------------------------- values */
 
-enum { FORCE, WORK, PARTS };
+enum { WORK = 3, PARTS }; /* of a support: forces along x, y, z, then this */
+
+/* Work of moments in the first half of the step. */
+static void add_turning(const struct solid *solid, int i, double dt, struct exact_sum *sums)
+{
+    double moment[3];
+    if (solid->turns.n_nodes == 0)
+        return;
+    solid_turns_support(solid, i, dt, moment);
+    for (int d = 0; d < 3; d++) {
+        const int held = solid->supports.turn_of_node[i][d];
+        if (held >= 0 && solid->supports.list[held].kind != SOLID_SUPPORT_FIXED)
+            exact_sum_add(&sums[PARTS * held + WORK],
+                          0.5 * dt * (moment[d] * solid_turn_spin(&solid->turns, i)[d]));
+    }
+}
 
 /* Adds what supports do in this step to totals, and takes forces away from what is booked.
  * Half of its work is done by now. */
@@ -91,7 +111,11 @@ static void add_step(struct solid *solid, int64_t step, double dt, struct exact_
     solid_supports_set(supports, step + 1, dt);
     for (int i = 0; i < solid->n_nodes; i++) {
         const int *held = supports->of_node[i];
-        if (!solid->moves[i] || (held[0] < 0 && held[1] < 0 && held[2] < 0))
+        if (!solid->moves[i])
+            continue;
+        if (step > 0)
+            add_turning(solid, i, dt, sums);
+        if (held[0] < 0 && held[1] < 0 && held[2] < 0)
             continue;
         const struct solid_advance advance = solid_advance(solid, i, dt);
         const double *v = solid_velocity(solid, i);
@@ -99,7 +123,7 @@ static void add_step(struct solid *solid, int64_t step, double dt, struct exact_
             if (held[d] < 0)
                 continue;
             const double force = advance.support[d];
-            exact_sum_add(&sums[PARTS * held[d] + FORCE], force);
+            exact_sum_add(&sums[PARTS * held[d] + d], force);
             exact_sum_add(&supports->list[held[d]].force[d], -force);
             if (step > 0 && supports->list[held[d]].kind != SOLID_SUPPORT_FIXED)
                 exact_sum_add(&sums[PARTS * held[d] + WORK], 0.5 * dt * (force * v[d]));
@@ -113,16 +137,19 @@ static int add_values(struct simulation *sim, struct solid *solid, double n_step
     struct solid_supports *supports = &solid->supports;
     struct exact_sum *sums = array_allocate((size_t)supports->n * PARTS, sizeof *sums);
     for (int s = 0; s < supports->n; s++) {
-        struct exact_sum *force = &supports->list[s].force[supports->list[s].direction];
-        sums[PARTS * s + FORCE] = *force;
+        memcpy(sums + PARTS * s, supports->list[s].force, sizeof supports->list[s].force);
+        memset(supports->list[s].force, 0, sizeof supports->list[s].force);
         sums[PARTS * s + WORK] = supports->list[s].work;
-        *force = (struct exact_sum){0};
     }
     add_step(solid, sim->step, sim->dt, sums);
     exact_sum_reduce(sim->comm, sums, PARTS * supports->n);
     for (int s = 0; s < supports->n; s++) {
-        row[n++] = exact_sum_value(&sums[PARTS * s + FORCE]) / n_steps;
-        if (supports->list[s].kind != SOLID_SUPPORT_FIXED)
+        const struct solid_support *support = &supports->list[s];
+        const bool all = support->kind == SOLID_SUPPORT_MOTION;
+        for (int d = 0; d < 3; d++)
+            if (all || (d == support->direction && !support->turns))
+                row[n++] = exact_sum_value(&sums[PARTS * s + d]) / n_steps;
+        if (support->kind != SOLID_SUPPORT_FIXED)
             row[n++] = exact_sum_value(&sums[PARTS * s + WORK]);
     }
     free(sums);

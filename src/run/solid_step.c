@@ -13,11 +13,13 @@
 #include "job/job.h"
 #include "model/body.h"
 #include "model/material.h"
+#include "model/skin.h"
 #include "model/solid_ball.h"
 #include "model/solid_mesh.h"
 #include "physics/critical_step.h"
-#include "physics/solid_element.h"
+#include "physics/shell_element.h"
 #include "run/limits.h"
+#include "solid/solid_plan.h"
 
 /* A solid, and of each of its nodes what contacts do to it. */
 struct ground {
@@ -46,9 +48,8 @@ static struct solid_element_material material_of(const struct job *job,
     return material;
 }
 
-/* An element's shape, and its corners' places. */
-static enum solid_element_shape places_of(const struct solid_mesh *mesh, int e,
-                                          double x[SOLID_ELEMENT_CORNERS][3])
+/* Its corners' places. */
+static void places_of(const struct solid_mesh *mesh, int e, double x[SOLID_ELEMENT_CORNERS][3])
 {
     const int n = solid_mesh_n_corners(mesh->elements[e]);
     for (int c = 0; c < n; c++) {
@@ -57,14 +58,29 @@ static enum solid_element_shape places_of(const struct solid_mesh *mesh, int e,
         x[c][1] = at.y;
         x[c][2] = at.z;
     }
-    return n == 8 ? SOLID_ELEMENT_HEXAHEDRON : SOLID_ELEMENT_TETRAHEDRON;
 }
 
 static double mass_of(const struct ground *ground, int e)
 {
+    const enum solid_element_shape shape = solid_plan_shape(ground->mesh, e);
     double x[SOLID_ELEMENT_CORNERS][3];
-    const enum solid_element_shape shape = places_of(ground->mesh, e, x);
-    return ground->material.density * solid_element_volume(shape, x);
+    places_of(ground->mesh, e, x);
+    return ground->material.density *
+           (shell_element_is(shape)
+                ? shell_element_area(shape, x) * ground->mesh->sheets[e].thickness
+                : solid_element_volume(shape, x));
+}
+
+static struct solid_element_load load_of(const struct ground *ground, int e)
+{
+    const enum solid_element_shape shape = solid_plan_shape(ground->mesh, e);
+    const double mass = mass_of(ground, e);
+    double x[SOLID_ELEMENT_CORNERS][3];
+    places_of(ground->mesh, e, x);
+    return shell_element_is(shape)
+               ? shell_element_load(shape, x, mass, ground->mesh->sheets[e].thickness,
+                                    ground->body->sheet.layers, &ground->material)
+               : solid_element_load(shape, x, mass, &ground->material);
 }
 
 static void ground_init(struct ground *ground, const struct job *job, int b)
@@ -110,10 +126,8 @@ static struct solid_step find_least(const struct ground *ground)
 {
     struct solid_step least = {.step = (double)INFINITY, .element = -1, .node = -1};
     for (int e = 0; e < ground->mesh->n_elements; e++) {
-        double x[SOLID_ELEMENT_CORNERS][3], stiffness, damping;
-        const enum solid_element_shape shape = places_of(ground->mesh, e, x);
-        const struct solid_element_load load =
-            solid_element_load(shape, x, mass_of(ground, e), &ground->material);
+        double stiffness, damping;
+        const struct solid_element_load load = load_of(ground, e);
         const int node = worst_corner(ground, e, ground->stiffness, &stiffness);
         (void)worst_corner(ground, e, ground->damping, &damping);
         const double step = solid_element_critical_step(&load, stiffness, damping);
@@ -137,17 +151,20 @@ struct solid_step solid_step_alone(const struct job *job, int b)
 /* Springs and dashpots of nodes of the surface. */
 struct surface {
     int n;
-    int *nodes;
+    int *nodes;               /* of vertices that contacts push */
     struct solid_ball *balls; /* of these, with the area that each stands for */
 };
 
 static void surface_init(struct surface *surface, const struct ground *ground,
                          const struct mesh *skin)
 {
-    int(*facets)[4];
-    (void)solid_mesh_skin(ground->mesh, &surface->n, &surface->nodes, &facets);
+    struct skin shape;
+    skin_build(&shape, ground->mesh);
+    surface->n = shape.n_vertices;
+    surface->nodes = shape.nodes;
+    shape.nodes = NULL;
     surface->balls = solid_balls(ground->mesh, skin, surface->nodes);
-    free(facets);
+    skin_clear(&shape);
 }
 
 static void surface_clear(struct surface *surface)
@@ -329,7 +346,7 @@ double solid_step_least(const struct job *job, const struct bodies *bodies,
 {
     double least = (double)INFINITY;
     for (int b = 0; b < job->n_bodies; b++) {
-        if (job->bodies[b].model != JOB_MODEL_SOLID)
+        if (!job_deforms(&job->bodies[b]))
             continue;
         const double step = solid_step_with_contacts(job, bodies, materials, spheres, b).step;
         least = step < least ? step : least;

@@ -12,6 +12,7 @@
 #include "job/job.h"
 #include "job/schema.h"
 #include "model/gmsh.h"
+#include "model/sheet_shape.h"
 #include "model/solid_mesh.h"
 #include "model/solid_quality.h"
 #include "model/solid_shape.h"
@@ -129,7 +130,7 @@ static int directions_of(const struct job_boundary *asked)
 {
     const bool moves =
         asked->n_displacements > 0 || asked->has_velocity || asked->n_velocities > 0;
-    return moves ? 1 << asked->direction : asked->fixed;
+    return asked->n_motions > 0 ? 7 : moves ? 1 << asked->direction : asked->fixed;
 }
 
 /* A node may be held twice but not moved in two ways. */
@@ -181,18 +182,35 @@ static void check_probe(const struct survey *survey, int k)
         FIND(survey, probe->place, "%s: set '%s' has none; some are expected", path, name);
 }
 
+static void check_thickness(const struct survey *survey, int k)
+{
+    const struct job_thickness *asked = &survey->body->solid.thicknesses[k];
+    const struct solid_mesh_set *set = solid_mesh_find(survey->mesh, asked->set);
+    char path[PATH];
+    snprintf(path, sizeof path, "bodies.%d.thicknesses.%d.set", survey->b, k);
+    if (set == NULL)
+        refuse_set(survey, path, asked->set, asked->place);
+    else if (set->n_elements == 0)
+        FIND(survey, asked->place, "%s: set '%s' has no elements; some are expected", path,
+             set->name);
+}
+
 static void check_body(struct job *job, int b, struct mistakes *mistakes)
 {
     struct job_body *body = &job->bodies[b];
     const struct job_solid *solid = &body->solid;
-    const bool file = solid->kind == JOB_MESH_GMSH;
+    const bool is_solid = body->model == JOB_MODEL_SOLID;
+    const bool file = is_solid && solid->kind == JOB_MESH_GMSH;
     const struct job_place nowhere = {0, 0};
-    if (file ? !group_is_there(body, mistakes)
-             : solid_shape_n_elements(body) > (double)GMSH_ELEMENTS_MOST) {
-        if (!file)
-            mistakes_add(mistakes, job->path, body->place.line, body->place.column,
-                         "bodies.%d.mesh makes %.3g elements; at most %d are expected", b,
-                         solid_shape_n_elements(body), GMSH_ELEMENTS_MOST);
+    const double n_elements = file       ? 0.0
+                              : is_solid ? solid_shape_n_elements(body)
+                                         : sheet_shape_n_elements(body);
+    if (file && !group_is_there(body, mistakes))
+        return;
+    if (n_elements > (double)GMSH_ELEMENTS_MOST) {
+        mistakes_add(mistakes, job->path, body->place.line, body->place.column,
+                     "bodies.%d.%s makes %.3g elements; at most %d are expected", b,
+                     is_solid ? "mesh" : "cell", n_elements, GMSH_ELEMENTS_MOST);
         return;
     }
     const struct solid_mesh *mesh = solid_mesh_keep(body);
@@ -210,6 +228,8 @@ static void check_body(struct job *job, int b, struct mistakes *mistakes)
         else
             check_set(&survey, k, set);
     }
+    for (int k = 0; k < solid->n_thicknesses; k++)
+        check_thickness(&survey, k);
     for (int k = 0; k < job->output.n_probes; k++)
         check_probe(&survey, k);
     check_conflicts(&survey);
@@ -218,7 +238,7 @@ static void check_body(struct job *job, int b, struct mistakes *mistakes)
 void solid_survey_check(struct job *job, struct mistakes *mistakes)
 {
     for (int b = 0; b < job->n_bodies; b++)
-        if (job->bodies[b].model == JOB_MODEL_SOLID)
+        if (job_deforms(&job->bodies[b]))
             check_body(job, b, mistakes);
 }
 
@@ -289,6 +309,24 @@ static void print_step(const struct job *job, const struct solid_mesh *mesh, int
                element_name(mesh, met.element, name), met.step, step / met.step);
 }
 
+/* "64 hexahedra, 12 quads" */
+static void list_kinds(const struct solid_quality *q, char text[TEXT])
+{
+    const struct {
+        int n;
+        const char *name;
+    } kinds[] = {{q->n_hexahedra, "hexahedra"},
+                 {q->n_tetrahedra, "tetrahedra"},
+                 {q->n_quads, "quads"},
+                 {q->n_triangles, "triangles"}};
+    size_t used = 0;
+    text[0] = '\0';
+    for (int k = 0; k < 4; k++)
+        if (kinds[k].n > 0)
+            used += (size_t)snprintf(text + used, TEXT - used, "%s%d %s", used > 0 ? ", " : "",
+                                     kinds[k].n, kinds[k].name);
+}
+
 void solid_survey_print(const struct job *job, const struct bodies *bodies,
                         const struct materials *materials, const struct limits_spheres *spheres,
                         int b)
@@ -299,9 +337,13 @@ void solid_survey_print(const struct job *job, const struct bodies *bodies,
     char aspect[TEXT], jacobian[TEXT];
     const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
     const struct solid_quality q = solid_quality_of(mesh);
-    report_say("body      %s: solid, %s, %d hexahedra, %d tetrahedra, %d nodes, mass %.6g kg",
-               body->name, material->name, q.n_hexahedra, q.n_tetrahedra, mesh->n_nodes,
-               q.volume * material->density);
+    char kinds[TEXT];
+    list_kinds(&q, kinds);
+    report_say("body      %s: %s, %s, %s, %d nodes, mass %.6g kg", body->name,
+               body->model == JOB_MODEL_SOLID   ? "solid"
+               : body->model == JOB_MODEL_SHELL ? "shell"
+                                                : "membrane",
+               material->name, kinds, mesh->n_nodes, q.volume * material->density);
     report_say("          x %.4g .. %.4g, y %.4g .. %.4g, z %.4g .. %.4g m", q.low.x, q.high.x,
                q.low.y, q.high.y, q.low.z, q.high.z);
     report_say("          volume %.6g m3, surface %.4g m2 in %d sides", q.volume, q.area,
@@ -310,6 +352,11 @@ void solid_survey_print(const struct job *job, const struct bodies *bodies,
                element_name(mesh, q.aspect_worst, aspect));
     report_say("          scaled Jacobian %.3g in the mean, least %.3g, of %s", q.jacobian_mean,
                q.jacobian_least, element_name(mesh, q.jacobian_worst, jacobian));
+    if (q.warp > 0.0)
+        report_say("          quads are warped by up to %.3g of their width, most %s", q.warp,
+                   element_name(mesh, q.warp_worst, aspect));
+    if (mesh->sheets != NULL)
+        report_say("          %.4g to %.4g m thick", q.thickness_least, q.thickness_most);
     print_step(job, mesh, b, bodies, materials, spheres);
     print_flow(job, body);
     print_sets(mesh);
@@ -318,7 +365,8 @@ void solid_survey_print(const struct job *job, const struct bodies *bodies,
 
 /* As `make bench-elements` measures (tests/bench/README.md): forces, and nodes as they are
  * moved, of elements that do not stay in the cache. */
-static const double SECONDS_A_HEXAHEDRON = 136e-9, SECONDS_A_TETRAHEDRON = 62e-9;
+static const double SECONDS_A_HEXAHEDRON = 136e-9, SECONDS_A_TETRAHEDRON = 62e-9,
+                    SECONDS_A_SHEET = 160e-9;
 /* Most memory at any time of a million hexahedra and of 750 000 tetrahedra (there too), 720 and
  * 404 bytes an element, shared out to elements and nodes. */
 enum { BYTES_AN_ELEMENT = 340, BYTES_A_NODE = 370 };
@@ -328,11 +376,12 @@ struct solid_survey_cost solid_survey_cost(const struct job *job)
     struct solid_survey_cost cost = {0.0, 0.0, 0.0};
     for (int b = 0; b < job->n_bodies; b++) {
         struct solid_mesh own;
-        if (job->bodies[b].model != JOB_MODEL_SOLID)
+        if (!job_deforms(&job->bodies[b]))
             continue;
         const struct solid_mesh *mesh = solid_mesh_borrow(&job->bodies[b], &own);
         for (int e = 0; e < mesh->n_elements; e++)
-            cost.seconds += solid_mesh_n_corners(mesh->elements[e]) == 8
+            cost.seconds += solid_mesh_is_sheet(mesh->elements[e]) ? SECONDS_A_SHEET
+                            : solid_mesh_n_corners(mesh->elements[e]) == 8
                                 ? SECONDS_A_HEXAHEDRON
                                 : SECONDS_A_TETRAHEDRON;
         cost.n_elements += mesh->n_elements;
@@ -371,7 +420,8 @@ static void warn_of_layers(const struct job_body *body)
     enum { LAYERS = 3 };
     double cells[3];
     const struct job_solid *solid = &body->solid;
-    if (solid->kind != JOB_MESH_PLATE || solid->elements != JOB_ELEMENTS_HEXAHEDRA)
+    if (body->model != JOB_MODEL_SOLID || solid->kind != JOB_MESH_PLATE ||
+        solid->elements != JOB_ELEMENTS_HEXAHEDRA)
         return;
     solid_shape_cells(body, cells);
     if (cells[2] < LAYERS)
@@ -385,7 +435,8 @@ static void warn_of_flow(const struct job *job, const struct job_body *body)
 {
     const struct job_material *material = &job->materials[body->material];
     const bool flows = material->yield > 0.0 || material->n_hardening_table > 0;
-    if (flows && body->solid.elements == JOB_ELEMENTS_HEXAHEDRA &&
+    if (flows && body->model == JOB_MODEL_SOLID &&
+        body->solid.elements == JOB_ELEMENTS_HEXAHEDRA &&
         body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS &&
         body->solid.hourglass.coefficient > 0.0)
         report_warn("body '%s': %s flows, and springs against hourglass modes do not: elements "

@@ -108,7 +108,7 @@ void survey_print(const struct job *job, const struct bodies *bodies,
                   const struct materials *materials, const struct limits_spheres *spheres)
 {
     for (int b = 0; b < bodies->n; b++)
-        if (job->bodies[b].model == JOB_MODEL_SOLID)
+        if (job_deforms(&job->bodies[b]))
             solid_survey_print(job, bodies, materials, spheres, b);
         else
             print_body(job, &bodies->list[b], materials, spheres);
@@ -227,7 +227,7 @@ void survey_warn(const struct job *job, const struct bodies *bodies,
     const struct cloud cloud = find_cloud(spheres, comm);
     for (int b = 0; b < bodies->n && comm->rank == 0; b++) {
         const struct mesh *mesh = &bodies->list[b].mesh;
-        if (job->bodies[b].model == JOB_MODEL_SOLID)
+        if (job_deforms(&job->bodies[b]))
             solid_survey_warn(job, b);
         if (!is_drawn(&job->bodies[b]))
             continue;

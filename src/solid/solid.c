@@ -23,6 +23,8 @@ const struct field solid_node_fields[SOLID_NODE_N_FIELDS] = {
          "loads, contacts, gravity, supports; taken by mass-proportional "
          "damping",
          FIELD_DOUBLE, SOLID_N_WORKS, FIELD_SAVED},
+    [SOLID_NODE_SPIN] = {"angular_velocity", "rad/s", "half a step earlier, of nodes of shells",
+                         FIELD_DOUBLE, 3, FIELD_GHOST | FIELD_MOTION | FIELD_SAVED},
 };
 
 const struct field solid_element_fields[SOLID_ELEMENT_N_FIELDS] = {
@@ -50,17 +52,15 @@ const struct field solid_element_fields[SOLID_ELEMENT_N_FIELDS] = {
                               FIELD_DOUBLE, 1, FIELD_GHOST | FIELD_SAVED},
     [SOLID_ELEMENT_ALIVE] = {"alive", "1", "1: it resists; 0: it has failed", FIELD_INT32, 1,
                              FIELD_GHOST | FIELD_SAVED | FIELD_PLOTTED},
-};
-
-const struct field solid_shell_fields[SOLID_SHELL_N_FIELDS] = {
-    [SOLID_SHELL_LAYERS] = {"layers", "Pa",
-                            "stress xx yy xy in the element's frame and plastic strain of "
-                            "each of five layers, a step earlier",
-                            FIELD_DOUBLE, 4 * SHELL_ELEMENT_LAYERS, FIELD_GHOST | FIELD_SAVED},
-    [SOLID_SHELL_SHEAR] = {"shear", "Pa", "mean stress xz yz in the element's frame",
-                           FIELD_DOUBLE, 2, FIELD_GHOST | FIELD_SAVED},
-    [SOLID_SHELL_THICKNESS] = {"thickness", "m", "now", FIELD_DOUBLE, 1,
-                               FIELD_GHOST | FIELD_SAVED | FIELD_PLOTTED},
+    [SOLID_ELEMENT_LAYERS] = {"layers", "Pa",
+                              "stress xx yy xy in the element's frame and plastic strain of "
+                              "each of five layers, a step earlier",
+                              FIELD_DOUBLE, 4 * SHELL_ELEMENT_LAYERS,
+                              FIELD_GHOST | FIELD_SAVED},
+    [SOLID_ELEMENT_SHEAR] = {"shear", "Pa", "mean stress xz yz in the element's frame",
+                             FIELD_DOUBLE, 2, FIELD_GHOST | FIELD_SAVED},
+    [SOLID_ELEMENT_THICKNESS] = {"thickness", "m", "now", FIELD_DOUBLE, 1,
+                                 FIELD_GHOST | FIELD_SAVED | FIELD_PLOTTED},
 };
 
 /* Corners of the element that pads: about a cube, of which the first four are a tetrahedron. */
@@ -268,6 +268,9 @@ struct field_view solid_node_view(const struct solid *solid, enum solid_node_fie
                                    sizeof *solid->node};
     case SOLID_NODE_WORK:
         return (struct field_view){(unsigned char *)solid->work, sizeof *solid->work};
+    case SOLID_NODE_SPIN:
+        return (struct field_view){(unsigned char *)solid->turns.spin,
+                                   sizeof *solid->turns.spin};
     case SOLID_NODE_N_FIELDS:
     default:
         CHECK(false, "there is no field %d", (int)field);
@@ -281,6 +284,12 @@ struct field_view solid_element_view(const struct solid *solid, enum solid_eleme
     ((struct field_view){(unsigned char *)solid->state +                                       \
                              offsetof(struct solid_element_state, member),                     \
                          sizeof *solid->state})
+#define SHEET(member)                                                                          \
+    ((struct field_view){solid->shell == NULL                                                  \
+                             ? NULL                                                            \
+                             : (unsigned char *)solid->shell +                                 \
+                                   offsetof(struct shell_element_state, member),               \
+                         sizeof *solid->shell})
     switch (field) {
     case SOLID_ELEMENT_STRESS:
         return VIEW(stress);
@@ -298,22 +307,27 @@ struct field_view solid_element_view(const struct solid *solid, enum solid_eleme
         return VIEW(damped);
     case SOLID_ELEMENT_ALIVE:
         return (struct field_view){(unsigned char *)solid->alive, sizeof *solid->alive};
+    case SOLID_ELEMENT_LAYERS:
+        return SHEET(layer);
+    case SOLID_ELEMENT_SHEAR:
+        return SHEET(shear);
+    case SOLID_ELEMENT_THICKNESS:
+        return SHEET(thickness);
     case SOLID_ELEMENT_N_FIELDS:
     default:
         CHECK(false, "there is no field %d", (int)field);
         return (struct field_view){NULL, 0};
     }
 #undef VIEW
+#undef SHEET
 }
 
-struct field_view solid_shell_view(const struct solid *solid, enum solid_shell_field field)
+double solid_mises(const struct solid *solid, int element)
 {
-    static const size_t offset[SOLID_SHELL_N_FIELDS] = {
-        [SOLID_SHELL_LAYERS] = offsetof(struct shell_element_state, layer),
-        [SOLID_SHELL_SHEAR] = offsetof(struct shell_element_state, shear),
-        [SOLID_SHELL_THICKNESS] = offsetof(struct shell_element_state, thickness)};
-    return (struct field_view){(unsigned char *)solid->shell + offset[field],
-                               sizeof *solid->shell};
+    const enum solid_element_shape shape = solid->shape[element];
+    return shell_element_is(shape)
+               ? shell_element_mises(&solid->shell[element], shape, solid->layers)
+               : solid_element_mises(&solid->state[element]);
 }
 
 int solid_corner_places(const struct solid *solid, int element,

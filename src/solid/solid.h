@@ -16,8 +16,8 @@
  *     solid_move()       velocities at n + 1/2, places at n + 1; clears `contact`
  *
  * What must be saved for the next solid_forces() stands in solid_node_fields[] and
- * solid_element_fields[]; where there are shells or membranes also in solid_shell_fields[], and
- * where nodes turn (solid_turn.h) in solid_turn_fields[].  Nothing here is collective.
+ * solid_element_fields[]; the last of them only where nodes turn, and where there are shells or
+ * membranes.  Nothing here is collective.
  */
 #ifndef TREMIE_SOLID_SOLID_H
 #define TREMIE_SOLID_SOLID_H
@@ -134,6 +134,8 @@ enum solid_node_field {
     SOLID_NODE_POSITION,
     SOLID_NODE_VELOCITY,
     SOLID_NODE_WORK,
+    SOLID_NODE_N_PLAIN,
+    SOLID_NODE_SPIN = SOLID_NODE_N_PLAIN, /* where nodes turn */
     SOLID_NODE_N_FIELDS
 };
 
@@ -146,30 +148,24 @@ enum solid_element_field {
     SOLID_ELEMENT_HOURGLASS_DAMPED,
     SOLID_ELEMENT_DAMPED,
     SOLID_ELEMENT_ALIVE,
+    SOLID_ELEMENT_N_PLAIN,
+    SOLID_ELEMENT_LAYERS = SOLID_ELEMENT_N_PLAIN, /* these where there are sheets */
+    SOLID_ELEMENT_SHEAR,
+    SOLID_ELEMENT_THICKNESS,
     SOLID_ELEMENT_N_FIELDS
-};
-
-/* Of solids with shells or membranes besides. */
-enum solid_shell_field {
-    SOLID_SHELL_LAYERS,
-    SOLID_SHELL_SHEAR,
-    SOLID_SHELL_THICKNESS,
-    SOLID_SHELL_N_FIELDS
 };
 
 extern const struct field solid_node_fields[SOLID_NODE_N_FIELDS];
 extern const struct field solid_element_fields[SOLID_ELEMENT_N_FIELDS];
-extern const struct field solid_shell_fields[SOLID_SHELL_N_FIELDS];
 
 /* At rest and without stress at the mesh's places, all of it moved here. */
 void solid_create(struct solid *solid, const struct solid_parts *mesh, int n_materials,
                   const struct solid_material *materials, enum isa isa);
 void solid_destroy(struct solid *solid);
 
-/* Where a field of the tables lies: node or element 0 first. */
+/* Where a field of the tables lies: node or element 0 first; nowhere where there is none. */
 struct field_view solid_node_view(const struct solid *solid, enum solid_node_field field);
 struct field_view solid_element_view(const struct solid *solid, enum solid_element_field field);
-struct field_view solid_shell_view(const struct solid *solid, enum solid_shell_field field);
 
 /* Chooses the nodes that this rank moves (NULL: all) and lists the living elements that are
  * computed for them.  Due again after solid_kill() and after `alive` was read from a file. */
@@ -213,6 +209,8 @@ static inline double *solid_velocity(const struct solid *solid, int i)
 {
     return solid->node[i].lane + 4;
 }
+/* Von Mises's equivalent stress; of shells the most of all layers [Pa]. */
+double solid_mises(const struct solid *solid, int element);
 /* Places of an element's corners [m]; returns how many. */
 int solid_corner_places(const struct solid *solid, int element,
                         double x[SOLID_ELEMENT_CORNERS][3]);

@@ -49,7 +49,8 @@ static void hold(struct solid_supports *supports, int (*of_node)[3],
                  int n_nodes, const int *nodes)
 {
     CHECK(direction >= 0 && direction < 3, "there is no direction %d", direction);
-    struct solid_support support = {.kind = kind, .direction = direction};
+    struct solid_support support = {
+        .kind = kind, .direction = direction, .turns = of_node == supports->turn_of_node};
     if (kind != SOLID_SUPPORT_FIXED)
         support.table = solid_table_copy(table);
     append(supports, &support);
@@ -187,6 +188,15 @@ void solid_supports_book(struct solid_supports *supports, int node, const double
         if (support->kind != SOLID_SUPPORT_FIXED)
             exact_sum_add(&support->work, force[k] * v[k] * dt);
     }
+}
+
+void solid_supports_book_turn(struct solid_supports *supports, int node, const double moment[3],
+                              const double w[3], double dt)
+{
+    const int *held = supports->turn_of_node[node];
+    for (int k = 0; k < 3; k++)
+        if (held[k] >= 0 && supports->list[held[k]].kind != SOLID_SUPPORT_FIXED)
+            exact_sum_add(&supports->list[held[k]].work, moment[k] * w[k] * dt);
 }
 
 void solid_supports_spin(const struct solid_supports *supports, int node, double spin[3])

@@ -8,6 +8,7 @@
 #ifndef TREMIE_SOLID_SOLID_SUPPORT_H
 #define TREMIE_SOLID_SOLID_SUPPORT_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "base/exact_sum.h"
@@ -27,6 +28,7 @@ enum solid_support_kind {
 struct solid_support {
     enum solid_support_kind kind;
     int direction; /* 0 to 2; of motions, which take all, 0 */
+    bool turns;    /* holds turning about that axis, not motion along it */
     struct solid_table table;
     int n_motions;
     const struct job_motion *motions; /* of the caller, who keeps them */
@@ -76,6 +78,9 @@ void solid_supports_place(const struct solid_supports *supports, int node,
 /* Books a step's force on a node that moves at v. */
 void solid_supports_book(struct solid_supports *supports, int node, const double force[3],
                          const double v[3], double dt);
+/* Books a step's work of a moment on a node that turns at w. */
+void solid_supports_book_turn(struct solid_supports *supports, int node, const double moment[3],
+                              const double w[3], double dt);
 /* How fast a node turns on its way there, where its turning is held; others are left.
  * (13.17) */
 void solid_supports_spin(const struct solid_supports *supports, int node, double spin[3]);

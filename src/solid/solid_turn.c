@@ -7,17 +7,6 @@
 #include "base/array.h"
 #include "solid/solid.h"
 
-const struct field solid_turn_fields[SOLID_TURN_N_FIELDS] = {
-    [SOLID_TURN_SPIN] = {"angular_velocity", "rad/s", "half a step earlier, of nodes of shells",
-                         FIELD_DOUBLE, 3, FIELD_GHOST | FIELD_MOTION | FIELD_SAVED},
-};
-
-struct field_view solid_turn_view(const struct solid_turns *turns, enum solid_turn_field field)
-{
-    (void)field; /* there is one */
-    return (struct field_view){(unsigned char *)turns->spin, sizeof *turns->spin};
-}
-
 void solid_turns_init(struct solid_turns *turns, int n_nodes)
 {
     const size_t n = (size_t)n_nodes;
@@ -26,6 +15,7 @@ void solid_turns_init(struct solid_turns *turns, int n_nodes)
     turns->inertia = array_allocate(n, sizeof *turns->inertia);
     turns->internal = array_allocate(n, sizeof *turns->internal);
     turns->external = array_allocate(n, sizeof *turns->external);
+    turns->contact = array_allocate(n, sizeof *turns->contact);
 }
 
 void solid_turns_clear(struct solid_turns *turns)
@@ -34,6 +24,7 @@ void solid_turns_clear(struct solid_turns *turns)
     free(turns->inertia);
     free(turns->internal);
     free(turns->external);
+    free(turns->contact);
     *turns = (struct solid_turns){0};
 }
 
@@ -61,7 +52,7 @@ static struct advance advance_at(const struct solid *solid, int i, double dt)
     struct advance advance = {{0.0}, {0.0}};
     double moment[3], held[3];
     for (int k = 0; k < 3; k++) {
-        moment[k] = turns->internal[i][k] + turns->external[i][k];
+        moment[k] = turns->internal[i][k] + turns->external[i][k] + turns->contact[i][k];
         advance.spin[k] = w[k] * ((1.0 - half) * push) + push * dt * (moment[k] / inertia);
         held[k] = advance.spin[k];
     }
@@ -87,6 +78,7 @@ static void add_power(const struct solid *solid, int i, const struct advance *ad
         const double now = 0.5 * (before[k] + advance->spin[k]);
         power[SOLID_WORK_INTERNAL] -= turns->internal[i][k] * w[k];
         power[SOLID_WORK_LOADS] += turns->external[i][k] * w[k];
+        power[SOLID_WORK_CONTACT] += turns->contact[i][k] * w[k];
         power[SOLID_WORK_SUPPORTS] += advance->support[k] * w[k];
         power[SOLID_WORK_DAMPING] += solid->damping * turns->inertia[i] * now * w[k];
     }
@@ -106,9 +98,19 @@ double solid_turns_power(const struct solid *solid, int i, double dt, double pow
     return kinetic;
 }
 
+void solid_turns_support(const struct solid *solid, int i, double dt, double moment[3])
+{
+    static const double none[3] = {0.0, 0.0, 0.0};
+    memcpy(moment, none, sizeof none);
+    if (solid->turns.n_nodes == 0 || !(solid->turns.inertia[i] > 0.0))
+        return;
+    const struct advance advance = advance_at(solid, i, dt);
+    memcpy(moment, advance.support, sizeof none);
+}
+
 void solid_turns_move(struct solid *solid, int64_t step, double dt)
 {
-    const struct solid_turns *turns = &solid->turns;
+    struct solid_turns *turns = &solid->turns;
     const double earlier = step > 0 ? 0.5 : 0.0; /* nothing was done before the start */
     for (int i = 0; i < solid->n_nodes; i++) {
         if (!solid->moves[i] || !(turns->inertia[i] > 0.0))
@@ -120,6 +122,8 @@ void solid_turns_move(struct solid *solid, int64_t step, double dt)
         add_power(solid, i, &advance, w, power);
         for (int k = 0; k < SOLID_N_WORKS; k++)
             solid->work[i][k] += power[k] * dt;
+        solid_supports_book_turn(&solid->supports, i, advance.support, w, dt);
         memcpy(spin, advance.spin, sizeof advance.spin);
+        memset(turns->contact[i], 0, sizeof turns->contact[i]);
     }
 }

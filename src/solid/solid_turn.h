@@ -9,7 +9,6 @@
 
 #include <stdint.h>
 
-#include "base/field.h"
 #include "physics/solid_element.h"
 
 struct solid;
@@ -20,13 +19,8 @@ struct solid_turns {
     double *inertia;                 /* [kg m2]; 0: this one does not turn */
     double (*internal)[3];           /* moment of the elements at step n [N m] */
     double (*external)[3];           /* of loads [N m] */
+    double (*contact)[3];            /* from outside; solid_move() clears it [N m] */
 };
-
-enum solid_turn_field { SOLID_TURN_SPIN, SOLID_TURN_N_FIELDS };
-
-/* What must be saved of it. */
-extern const struct field solid_turn_fields[SOLID_TURN_N_FIELDS];
-struct field_view solid_turn_view(const struct solid_turns *turns, enum solid_turn_field field);
 
 void solid_turns_init(struct solid_turns *turns, int n_nodes);
 void solid_turns_clear(struct solid_turns *turns);
@@ -39,6 +33,10 @@ void solid_turns_move(struct solid *solid, int64_t step, double dt);
 /* Adds the power of what works on a node that turns as half a step earlier to `power`, of each
  * enum solid_work [W]; returns its kinetic energy in turning [J]. */
 double solid_turns_power(const struct solid *solid, int i, double dt, double power[]);
+
+/* Moment of what holds a node that turns, in the step that is about to be made; none where it
+ * does not turn [N m]. */
+void solid_turns_support(const struct solid *solid, int i, double dt, double moment[3]);
 
 static inline double *solid_turn_spin(const struct solid_turns *turns, int i)
 {

@@ -64,7 +64,9 @@ const struct field snapshot_element_fields[SNAPSHOT_N_ELEMENT_FIELDS] = {
     [SNAPSHOT_ELEMENT_ID] = {"id", "1", "number of the element, from 0", FIELD_INT64, 1, 0},
     [SNAPSHOT_ELEMENT_STRESS] = {"stress", "Pa", "Cauchy's, xx yy zz xy yz zx", FIELD_DOUBLE, 6,
                                  0},
-    [SNAPSHOT_ELEMENT_VON_MISES] = {"von_mises", "Pa", "von Mises's equivalent stress",
+    [SNAPSHOT_ELEMENT_VON_MISES] = {"von_mises", "Pa",
+                                    "von Mises's equivalent stress; of shells the most of all "
+                                    "layers",
                                     FIELD_DOUBLE, 1, 0},
     [SNAPSHOT_ELEMENT_PRINCIPAL_STRESS] = {"principal_stress", "Pa",
                                            "principal stresses, the greatest first",

@@ -159,7 +159,7 @@ refused()
 refused "output.probes.0 has no place; one of node, nodes, element, elements is expected" \
     --set "output.probes=[{name: a, body: block}]"
 refused "output.probes.0 has several places; " --set "output.probes=[{name: a, body: block, nodes: all, node: [0, 0, 0]}]"
-refused "names 'ball', which is no body with model solid" --set "output.probes=[{name: a, body: ball, nodes: all}]"
+refused "names 'ball', which is no body that deforms" --set "output.probes=[{name: a, body: ball, nodes: all}]"
 refused "output.probes.0.nodes: there is no set 'z_mix'; z_min is expected" \
     --set "output.probes=[{name: a, body: block, nodes: z_mix}]"
 refused "output.probes.0.elements: set 'z_min' has none; some are expected" \

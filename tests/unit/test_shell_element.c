@@ -295,17 +295,10 @@ TEST(fields_are_all_the_state)
         copy_field(solid_node_view(&second, (enum solid_node_field)f),
                    solid_node_view(&first, (enum solid_node_field)f), &solid_node_fields[f],
                    first.n_nodes);
-    copy_field(solid_turn_view(&second.turns, SOLID_TURN_SPIN),
-               solid_turn_view(&first.turns, SOLID_TURN_SPIN),
-               &solid_turn_fields[SOLID_TURN_SPIN], first.n_nodes);
     for (int f = 0; f < SOLID_ELEMENT_N_FIELDS; f++)
         copy_field(solid_element_view(&second, (enum solid_element_field)f),
                    solid_element_view(&first, (enum solid_element_field)f),
                    &solid_element_fields[f], first.n_elements);
-    for (int f = 0; f < SOLID_SHELL_N_FIELDS; f++)
-        copy_field(solid_shell_view(&second, (enum solid_shell_field)f),
-                   solid_shell_view(&first, (enum solid_shell_field)f), &solid_shell_fields[f],
-                   first.n_elements);
     solid_assign(&second, NULL);
     steps(&first, 30, 60);
     steps(&second, 30, 60);

@@ -1,0 +1,368 @@
+/* See skin.h. */
+#include "model/skin.h"
+
+#include <stdbool.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "model/solid_mesh.h"
+
+/* ---------------------------------------------------------------------------------- places */
+
+static struct vec3 place_of(const double *places, size_t stride, int node)
+{
+    const double *x = places + stride * (size_t)node;
+    return (struct vec3){x[0], x[1], x[2]};
+}
+
+struct vec3 skin_normal(const struct skin_sheet *sheet, const double *places, size_t stride)
+{
+    const int *c = sheet->corners;
+    const struct vec3 a = place_of(places, stride, c[0]), b = place_of(places, stride, c[1]),
+                      d = place_of(places, stride, c[2]);
+    const struct vec3 area =
+        c[3] < 0 ? vec3_cross(vec3_sub(b, a), vec3_sub(d, a))
+                 : vec3_cross(vec3_sub(d, a), vec3_sub(place_of(places, stride, c[3]), b));
+    return vec3_scale(1.0 / vec3_norm(area), area);
+}
+
+struct vec3 skin_arm(const struct skin *skin, int ring, const struct vec3 *normals)
+{
+    const struct skin_ring *own = &skin->rings[ring];
+    struct vec3 sum = {0.0, 0.0, 0.0};
+    for (int k = own->begin; k < own->end; k++)
+        sum = vec3_add(sum, normals[skin->around[k]]);
+    return vec3_scale(own->half / vec3_norm(sum), sum);
+}
+
+void skin_place(const struct skin *skin, const struct vec3 *nodes, struct vec3 *vertices)
+{
+    struct vec3 *normals = array_allocate((size_t)skin->n_sheets, sizeof *normals);
+    for (int s = 0; s < skin->n_sheets; s++)
+        normals[s] = skin_normal(&skin->sheets[s], &nodes->x, 3);
+    for (int v = 0; v < skin->n_plain; v++)
+        vertices[v] = nodes[skin->nodes[v]];
+    for (int r = 0; r < skin->n_rings; r++) {
+        const struct vec3 arm = skin_arm(skin, r, normals), at = nodes[skin->rings[r].node];
+        vertices[skin->n_plain + 2 * r] = vec3_add(at, arm);
+        vertices[skin->n_plain + 2 * r + 1] = vec3_sub(at, arm);
+    }
+    free(normals);
+}
+
+/* ---------------------------------------------------------------------------------- solids */
+
+static int count_facets(const struct solid_mesh *mesh, int n_sides)
+{
+    int n = n_sides;
+    for (int e = 0; e < mesh->n_elements; e++)
+        n += solid_mesh_is_sheet(mesh->elements[e]) ? 5 : 0; /* below, and four rims */
+    return n;
+}
+
+static void add_solids(struct skin *skin, const struct solid_mesh *mesh, int n,
+                       const struct solid_mesh_side *sides)
+{
+    int *vertex = array_allocate((size_t)mesh->n_nodes, sizeof *vertex); /* 0: none, else + 1 */
+    for (int k = 0; k < n; k++) {
+        const int *element = mesh->elements[sides[k].element];
+        if (solid_mesh_is_sheet(element))
+            continue;
+        int *facet = skin->facets[skin->n_facets++];
+        const int n_corners = solid_mesh_side_nodes(element, sides[k].side, facet);
+        for (int c = 0; c < n_corners; c++) {
+            const int node = facet[c];
+            if (vertex[node] == 0) {
+                skin->nodes[skin->n_vertices] = node;
+                vertex[node] = ++skin->n_vertices;
+            }
+            facet[c] = vertex[node] - 1;
+        }
+    }
+    skin->n_plain = skin->n_vertices;
+    free(vertex);
+}
+
+/* ---------------------------------------------------------------------------------- sheets */
+
+/* A side of a sheet. */
+struct side {
+    int ends[2]; /* ascending */
+    int sheet, side;
+    bool turned; /* goes from the greater to the lesser */
+};
+
+struct draft {
+    const struct solid_mesh *mesh;
+    int n, *elements; /* sheets, by their elements */
+    struct vec3 *normals;
+    int n_sides;
+    struct side *sides; /* those of one edge follow each other */
+    int (*partner)[4];  /* of each side: another sheet's into which it goes on, * 4; -1 */
+    int *part;          /* of each sheet */
+    bool *flipped;      /* is it seen from below in its part? */
+};
+
+static int compare_sides(const void *a, const void *b)
+{
+    const struct side *p = a, *q = b;
+    for (int k = 0; k < 2; k++)
+        if (p->ends[k] != q->ends[k])
+            return p->ends[k] < q->ends[k] ? -1 : 1;
+    if (p->sheet != q->sheet)
+        return p->sheet < q->sheet ? -1 : 1;
+    return (p->side > q->side) - (p->side < q->side);
+}
+
+static void list_sides(struct draft *draft)
+{
+    draft->sides = array_allocate(4 * (size_t)draft->n, sizeof *draft->sides);
+    for (int s = 0; s < draft->n; s++) {
+        const int *corners = draft->mesh->elements[draft->elements[s]];
+        const int n = solid_mesh_n_corners(corners);
+        for (int k = 0; k < n; k++) {
+            const int a = corners[k], b = corners[(k + 1) % n];
+            draft->sides[draft->n_sides++] =
+                (struct side){{a < b ? a : b, a < b ? b : a}, s, k, a > b};
+        }
+    }
+    if (draft->n_sides > 0)
+        qsort(draft->sides, (size_t)draft->n_sides, sizeof *draft->sides, compare_sides);
+}
+
+/* Two that are alone at an edge go on into each other if their normals hardly differ. */
+static void find_partners(struct draft *draft)
+{
+    draft->partner = array_allocate((size_t)draft->n, sizeof *draft->partner);
+    memset(draft->partner, -1, (size_t)draft->n * sizeof *draft->partner);
+    for (int k = 0, end; k < draft->n_sides; k = end) {
+        const struct side *p = &draft->sides[k], *q = p + 1;
+        for (end = k + 1; end < draft->n_sides; end++)
+            if (memcmp(draft->sides[end].ends, p->ends, sizeof p->ends) != 0)
+                break;
+        if (end - k != 2)
+            continue;
+        const double cosine = vec3_dot(draft->normals[p->sheet], draft->normals[q->sheet]);
+        if ((p->turned != q->turned ? cosine : -cosine) < SKIN_SMOOTH)
+            continue;
+        draft->partner[p->sheet][p->side] = 4 * q->sheet + q->side;
+        draft->partner[q->sheet][q->side] = 4 * p->sheet + p->side;
+    }
+}
+
+/* Do two sheets go round in the same sense, by sides that are partners? */
+static bool agree(const struct draft *draft, int sheet, int side, int partner)
+{
+    const int *own = draft->mesh->elements[draft->elements[sheet]];
+    const int *other = draft->mesh->elements[draft->elements[partner / 4]];
+    const int n = solid_mesh_n_corners(other);
+    return own[side] == other[(partner % 4 + 1) % n];
+}
+
+/* Parts of sheets that go on into each other, all seen from one side. */
+static void find_parts(struct draft *draft)
+{
+    int *queue = array_allocate((size_t)draft->n, sizeof *queue);
+    draft->part = array_allocate((size_t)draft->n, sizeof *draft->part);
+    draft->flipped = array_allocate((size_t)draft->n, sizeof *draft->flipped);
+    memset(draft->part, -1, (size_t)draft->n * sizeof *draft->part);
+    for (int first = 0; first < draft->n; first++) {
+        int n = 0;
+        if (draft->part[first] >= 0)
+            continue;
+        draft->part[first] = first;
+        queue[n++] = first;
+        for (int k = 0; k < n; k++)
+            for (int side = 0; side < 4; side++) {
+                const int partner = draft->partner[queue[k]][side];
+                if (partner < 0 || draft->part[partner / 4] >= 0)
+                    continue;
+                draft->part[partner / 4] = first;
+                draft->flipped[partner / 4] =
+                    draft->flipped[queue[k]] != !agree(draft, queue[k], side, partner);
+                queue[n++] = partner / 4;
+            }
+    }
+    free(queue);
+}
+
+/* The ring of a node in a part; what is new ends the list.  `next` chains a node's rings. */
+static int ring_of(struct skin *skin, int *head, int **next, int **part, int node, int wanted)
+{
+    int r = head[node];
+    while (r >= 0 && (*part)[r] != wanted)
+        r = (*next)[r];
+    if (r >= 0)
+        return r;
+    r = skin->n_rings++;
+    const int had = skin->ring_capacity;
+    ARRAY_GROW(skin->rings, skin->n_rings, skin->ring_capacity);
+    if (skin->ring_capacity > had) {
+        const size_t size = (size_t)skin->ring_capacity;
+        *next = array_resize(*next, (size_t)had, size, sizeof **next);
+        *part = array_resize(*part, (size_t)had, size, sizeof **part);
+    }
+    skin->rings[r] = (struct skin_ring){.node = node};
+    (*next)[r] = head[node];
+    (*part)[r] = wanted;
+    head[node] = r;
+    return r;
+}
+
+/* Rings of the corners of each sheet, in their order. */
+static int (*find_rings(struct skin *skin, const struct draft *draft))[4]
+{
+    const struct solid_mesh *mesh = draft->mesh;
+    int(*rings)[4] = array_allocate((size_t)draft->n, sizeof *rings);
+    int *head = array_allocate((size_t)mesh->n_nodes, sizeof *head), *next = NULL, *part = NULL;
+    memset(head, -1, (size_t)mesh->n_nodes * sizeof *head);
+    for (int s = 0; s < draft->n; s++)
+        for (int k = 0; k < 4; k++) {
+            const int node = skin->sheets[s].corners[k];
+            rings[s][k] =
+                node >= 0 ? ring_of(skin, head, &next, &part, node, draft->part[s]) : -1;
+            if (node >= 0)
+                skin->rings[rings[s][k]].end++;
+        }
+    free(head);
+    free(next);
+    free(part);
+    return rings;
+}
+
+/* The sheets around each ring, and half of their mean thickness. */
+static void list_around(struct skin *skin, const struct draft *draft, int (*rings)[4])
+{
+    int n = 0;
+    for (int r = 0; r < skin->n_rings; r++) {
+        const int count = skin->rings[r].end;
+        skin->rings[r].begin = skin->rings[r].end = n;
+        n += count;
+    }
+    skin->around = array_allocate((size_t)n, sizeof *skin->around);
+    for (int s = 0; s < draft->n; s++)
+        for (int k = 0; k < 4 && rings[s][k] >= 0; k++) {
+            struct skin_ring *ring = &skin->rings[rings[s][k]];
+            skin->around[ring->end++] = s;
+            ring->half += 0.5 * draft->mesh->sheets[draft->elements[s]].thickness;
+        }
+    for (int r = 0; r < skin->n_rings; r++)
+        skin->rings[r].half /= (double)(skin->rings[r].end - skin->rings[r].begin);
+}
+
+static void add_facet(struct skin *skin, int a, int b, int c, int d)
+{
+    const int facet[4] = {a, b, c, d};
+    memcpy(skin->facets[skin->n_facets++], facet, sizeof facet);
+}
+
+/* Above, below, and at what is no border of a part. */
+static void add_sheet(struct skin *skin, const struct draft *draft, int s, const int rings[4])
+{
+    const int n = rings[3] >= 0 ? 4 : 3;
+    int above[4];
+    for (int k = 0; k < n; k++)
+        above[k] = skin->n_plain + 2 * rings[k];
+    add_facet(skin, above[0], above[1], above[2], n == 4 ? above[3] : -1);
+    if (n == 4)
+        add_facet(skin, above[3] + 1, above[2] + 1, above[1] + 1, above[0] + 1);
+    else
+        add_facet(skin, above[2] + 1, above[1] + 1, above[0] + 1, -1);
+    for (int k = 0; k < n; k++) {
+        /* side k of what is seen from below is another of the element itself */
+        const int own = draft->flipped[s] ? (2 * n - 2 - k) % n : k;
+        const int partner = draft->partner[s][own];
+        const int next = (k + 1) % n;
+        if (partner >= 0 && draft->part[partner / 4] == draft->part[s] &&
+            (draft->flipped[partner / 4] != draft->flipped[s]) ==
+                !agree(draft, s, own, partner))
+            continue;
+        add_facet(skin, above[k] + 1, above[next] + 1, above[next], above[k]);
+    }
+}
+
+/* Corners as seen from above in the sheet's part: from below they go round the other way. */
+static void turn_sheets(struct skin *skin, const struct draft *draft)
+{
+    for (int s = 0; s < draft->n; s++) {
+        const int *corners = draft->mesh->elements[draft->elements[s]];
+        const int n = solid_mesh_n_corners(corners);
+        skin->sheets[s].corners[3] = -1;
+        for (int k = 0; k < n; k++)
+            skin->sheets[s].corners[k] = corners[draft->flipped[s] ? n - 1 - k : k];
+    }
+}
+
+static void draft_init(struct draft *draft, const struct solid_mesh *mesh)
+{
+    *draft = (struct draft){.mesh = mesh};
+    draft->elements = array_allocate((size_t)mesh->n_elements, sizeof *draft->elements);
+    for (int e = 0; e < mesh->n_elements; e++)
+        if (solid_mesh_is_sheet(mesh->elements[e]))
+            draft->elements[draft->n++] = e;
+    draft->normals = array_allocate((size_t)draft->n, sizeof *draft->normals);
+    for (int s = 0; s < draft->n; s++) {
+        struct skin_sheet sheet;
+        memcpy(sheet.corners, mesh->elements[draft->elements[s]], sizeof sheet.corners);
+        draft->normals[s] = skin_normal(&sheet, &mesh->nodes->x, 3);
+    }
+    list_sides(draft);
+    find_partners(draft);
+    find_parts(draft);
+}
+
+static void draft_clear(struct draft *draft)
+{
+    free(draft->elements);
+    free(draft->normals);
+    free(draft->sides);
+    free(draft->partner);
+    free(draft->part);
+    free(draft->flipped);
+}
+
+static void add_sheets(struct skin *skin, const struct solid_mesh *mesh)
+{
+    struct draft draft;
+    draft_init(&draft, mesh);
+    skin->n_sheets = draft.n;
+    skin->sheets = array_allocate((size_t)draft.n, sizeof *skin->sheets);
+    turn_sheets(skin, &draft);
+    int(*rings)[4] = find_rings(skin, &draft);
+    list_around(skin, &draft, rings);
+    skin->nodes =
+        array_resize(skin->nodes, (size_t)skin->n_plain,
+                     (size_t)(skin->n_plain + 2 * skin->n_rings), sizeof *skin->nodes);
+    for (int r = 0; r < 2 * skin->n_rings; r++)
+        skin->nodes[skin->n_vertices++] = skin->rings[r / 2].node;
+    for (int s = 0; s < draft.n; s++)
+        add_sheet(skin, &draft, s, rings[s]);
+    free(rings);
+    draft_clear(&draft);
+}
+
+/* ------------------------------------------------------------------------------------ all */
+
+void skin_build(struct skin *skin, const struct solid_mesh *mesh)
+{
+    struct solid_mesh_side *sides;
+    const int n = solid_mesh_surface(mesh, &sides);
+    *skin = (struct skin){.n_vertices = 0};
+    skin->nodes = array_allocate((size_t)mesh->n_nodes, sizeof *skin->nodes);
+    skin->facets = array_allocate((size_t)count_facets(mesh, n), sizeof *skin->facets);
+    add_solids(skin, mesh, n, sides);
+    if (mesh->sheets != NULL)
+        add_sheets(skin, mesh);
+    free(sides);
+}
+
+void skin_clear(struct skin *skin)
+{
+    free(skin->nodes);
+    free(skin->facets);
+    free(skin->rings);
+    free(skin->sheets);
+    free(skin->around);
+    *skin = (struct skin){.n_vertices = 0};
+}

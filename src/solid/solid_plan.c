@@ -1,0 +1,14 @@
+/* See solid_plan.h. */
+#include "solid/solid_plan.h"
+
+#include "model/solid_mesh.h"
+
+enum solid_element_shape solid_plan_shape(const struct solid_mesh *mesh, int element)
+{
+    const int n = solid_mesh_n_corners(mesh->elements[element]);
+    if (!solid_mesh_is_sheet(mesh->elements[element]))
+        return n == 8 ? SOLID_ELEMENT_HEXAHEDRON : SOLID_ELEMENT_TETRAHEDRON;
+    if (mesh->sheets[element].membrane)
+        return n == 4 ? SOLID_ELEMENT_MEMBRANE_QUAD : SOLID_ELEMENT_MEMBRANE_TRIANGLE;
+    return n == 4 ? SOLID_ELEMENT_SHELL_QUAD : SOLID_ELEMENT_SHELL_TRIANGLE;
+}
