@@ -442,7 +442,7 @@ static void push_skin(const struct step *step, int k)
     if (skin == NULL || pushed->begin == pushed->end)
         return;
     const double elastic[3] = {pushed->elastic.x, pushed->elastic.y, pushed->elastic.z};
-    struct exact_sum *last = skin->force[work->corners[pushed->end - 1].corner];
+    struct exact_sum *last = body_skin_push(skin, work->corners[pushed->end - 1].corner);
     for (int x = 0; x < 3; x++) {
         const double force = work->batch.force[x][k], rest = force - elastic[x];
         exact_sum_add(&last[x], force);
@@ -450,7 +450,8 @@ static void push_skin(const struct step *step, int k)
             const struct facet_patch_corner *corner = &work->corners[c];
             const double area[3] = {corner->pushed.x, corner->pushed.y, corner->pushed.z};
             const double share = corner->weight * rest - pushed->pressure * area[x];
-            exact_sum_add(&last[x], -exact_sum_add(&skin->force[corner->corner][x], share));
+            struct exact_sum *own = body_skin_push(skin, corner->corner);
+            exact_sum_add(&last[x], -exact_sum_add(&own[x], share));
         }
     }
     if (!pushed->holds_energy)
@@ -594,6 +595,7 @@ static void end_part(const struct step *step, int entry)
     struct facet_work *work = step->facets->work;
     const struct facet_contact *contact = &step->facets->list[entry];
     const struct body *body = &step->bodies->list[contact->body];
+    body_renew_face(body, contact->feature);
     facet_patch_whole(&work->patch, body, contact->feature);
     const struct facet_patch_part *part = work->patch.parts;
     const struct contact_geometry at = {.normal = part->facing};
@@ -609,9 +611,11 @@ static void end_group(const struct step *step, int begin, int end)
         const struct facet_contact *contact = &step->facets->list[k];
         if (!facet_contact_touched(contact))
             continue;
-        const struct mesh *mesh = &step->bodies->list[contact->body].mesh;
+        const struct body *body = &step->bodies->list[contact->body];
+        if (body->skin != NULL)
+            body_renew_face(body, contact->feature);
         const struct contact_geometry at = contact_geometry_closest(
-            mesh, contact->feature, sphere_place(step->spheres, contact->sphere));
+            &body->mesh, contact->feature, sphere_place(step->spheres, contact->sphere));
         add_contact(step, k, &at, 0.0);
     }
 }
@@ -747,6 +751,8 @@ static void look_around(const struct step *step, struct group *group, struct vec
     group->travelled = work->travelled[entries->body];
     group->slack = is_long ? NEAR_RADII * radius + NEAR_STEPS * step->kernel_work->dt * speed
                            : (double)INFINITY;
+    for (int k = 0; k < n && is_long && body->skin != NULL; k++)
+        body_renew_face(body, entries[k].feature);
     for (int k = 0; k < n; k++)
         if (!is_long || facet_contact_touched(&entries[k]) ||
             contact_geometry_reaches(&body->mesh, entries[k].feature, centre,
@@ -883,6 +889,8 @@ static double held_energy(const struct spheres *spheres, const struct body *body
     const struct vec3 centre = sphere_place(spheres, i);
     const struct vec3 drift =
         vec3_sub(vec3_of(sphere_velocity(spheres, i)), body_drift(body, centre));
+    if (body->skin != NULL)
+        body_renew_face(body, contact->feature);
     const struct contact_geometry at = contact_geometry_closest(
         &body->mesh, contact->feature, vec3_axpy(centre, -0.5 * dt, drift));
     const double overlap = sphere_radius(spheres, i) - at.distance;

@@ -46,6 +46,7 @@ static double cut_faces(struct facet_patch *patch, const struct facet_contact *g
     patch->n_cuts = patch->n_parts = 0;
     for (int m = 0; m < n; m++) {
         struct facet_patch_cut cut = {.entry = near[m], .face = group[near[m]].feature};
+        body_renew_face(body, cut.face);
         if (!contact_patch_cut(&body->mesh, cut.face, centre, radius, &cut.at))
             continue;
         struct facet_patch_part *part = part_of(patch, body->skin->smooth[cut.face]);

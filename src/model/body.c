@@ -215,7 +215,27 @@ struct body_skin *body_skin_build(const struct mesh *mesh)
     skin->velocity = array_allocate(n, sizeof *skin->velocity);
     skin->inverse_mass = array_allocate(n, sizeof *skin->inverse_mass);
     skin->force = array_allocate(n, sizeof *skin->force);
+    skin->pushed = array_allocate(n, sizeof *skin->pushed);
+    skin->since = array_allocate((size_t)mesh->n_faces, sizeof *skin->since);
     return skin;
+}
+
+void body_renew_face(const struct body *body, int face)
+{
+    const struct mesh *mesh = &body->mesh;
+    if (body->skin->since[face] == body->skin->now)
+        return;
+    for (int k = 0; k < 3; k++) {
+        const int v = mesh->faces[face].vertices[k];
+        struct vec3 mean = {0.0, 0.0, 0.0};
+        if (v < mesh->n_corners)
+            continue;
+        for (int c = 0; c < 4; c++)
+            mean = vec3_axpy(mean, 0.25, mesh->place[mesh->mean_of[v - mesh->n_corners][c]]);
+        mesh->place[v] = mean;
+    }
+    mesh_update_face(mesh, face);
+    body->skin->since[face] = body->skin->now;
 }
 
 void body_skin_free(struct body_skin *skin)
@@ -225,6 +245,8 @@ void body_skin_free(struct body_skin *skin)
     free(skin->velocity);
     free(skin->inverse_mass);
     free(skin->force);
+    free(skin->pushed);
+    free(skin->since);
     free(skin->smooth);
     free(skin);
 }

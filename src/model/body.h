@@ -25,12 +25,21 @@ struct rigid;
 struct body_skin {
     struct vec3 *velocity;        /* half a step before [m/s] */
     double *inverse_mass;         /* [1/kg] */
-    struct exact_sum (*force)[3]; /* of this step's contacts, added to by them [N] */
+    struct exact_sum (*force)[3]; /* of this step's contacts: body_skin_push() [N] */
+    bool *pushed;                 /* by some of them; forces of others are zero */
     int *smooth; /* of each face: the first one of those that it goes on to without an edge */
+    /* Faces are brought to where their corners are when they are asked for. */
+    int now, *since; /* counts changes of places; of each face: at which it was brought there */
 };
 
 /* Of a surface at rest, as if it could not yield. */
 struct body_skin *body_skin_build(const struct mesh *mesh);
+/* Force on a point of the skin, to be added to. */
+static inline struct exact_sum *body_skin_push(const struct body_skin *skin, int point)
+{
+    skin->pushed[point] = true;
+    return skin->force[point];
+}
 void body_skin_free(struct body_skin *skin);
 
 struct body {
@@ -62,6 +71,9 @@ struct body {
     double speed_max; /* fastest vertex, for allowances: over all time, or of a body that forces
                        * move at present [m/s] */
 };
+
+/* Brings a face of a skin to where its corners are, before it is looked at. */
+void body_renew_face(const struct body *body, int face);
 
 struct bodies {
     int n;

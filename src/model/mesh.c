@@ -582,7 +582,7 @@ void mesh_clear(struct mesh *mesh)
     *mesh = (struct mesh){0};
 }
 
-void mesh_update_face(struct mesh *mesh, int f)
+void mesh_update_face(const struct mesh *mesh, int f)
 {
     const struct mesh_face *face = &mesh->faces[f];
     const struct vec3 area = face_area(face, mesh->place);

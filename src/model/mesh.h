@@ -123,7 +123,7 @@ struct mesh_survey mesh_survey(const struct mesh *mesh);
 /* Recomputes what is derived from `place`. */
 void mesh_update(struct mesh *mesh);
 /* The same of one face. */
-void mesh_update_face(struct mesh *mesh, int f);
+void mesh_update_face(const struct mesh *mesh, int f);
 static inline int mesh_n_features(const struct mesh *mesh)
 {
     return mesh->n_faces + mesh->n_edges + mesh->n_vertices + mesh->n_bands + mesh->n_rings;

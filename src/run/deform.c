@@ -227,6 +227,13 @@ void deform_begin(struct simulation *sim)
         deform_skin_place(&sim->deform.list[k], &sim->bodies.list[sim->deform.list[k].body]);
 }
 
+void deform_place_faces(const struct simulation *sim)
+{
+    for (int k = 0; k < sim->deform.n; k++)
+        deform_skin_place_faces(&sim->deform.list[k],
+                                &sim->bodies.list[sim->deform.list[k].body]);
+}
+
 void deform_agree(struct simulation *sim)
 {
     for (int k = 0; k < sim->deform.n; k++) {

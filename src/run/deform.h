@@ -51,6 +51,8 @@ void deform_clear(struct deform *deform, const struct comm *comm);
 
 /* Puts the skins where the nodes are, with their velocities, before contacts.  Local. */
 void deform_begin(struct simulation *sim);
+/* Puts all faces of skins where their corners are, before a search.  Local. */
+void deform_place_faces(const struct simulation *sim);
 /* Tells how fast skins are on any rank, for allowances.  Collective. */
 void deform_agree(struct simulation *sim);
 /* Takes the contacts' forces and finds the elements'.  Collective. */

@@ -496,15 +496,6 @@ struct push {
     struct exact_sum force[3];
 };
 
-/* Sums of nothing are zero in every limb. */
-static bool is_pushed(const struct exact_sum force[3])
-{
-    for (int x = 0; x < 3; x++)
-        if ((force[x].limb[0] | force[x].limb[1] | force[x].limb[2] | force[x].overflow) != 0)
-            return true;
-    return false;
-}
-
 static void pack_pushes(struct simulation *sim, int b, int q)
 {
     const struct deform_body *deform = &sim->deform.list[b];
@@ -515,7 +506,7 @@ static void pack_pushes(struct simulation *sim, int b, int q)
     push.body = b;
     for (int m = 0; m < peer->n_pushed; m++) {
         push.vertex = peer->pushed[m];
-        if (!is_pushed(skin->force[push.vertex]))
+        if (!skin->pushed[push.vertex])
             continue;
         memcpy(push.force, skin->force[push.vertex], sizeof push.force);
         comm_mail_pack(&sim->deform.mail, q, &push, sizeof push);
@@ -536,6 +527,6 @@ void deform_share_push(struct simulation *sim)
             comm_mail_unpack(&deform->mail, deform->pushing[k], &push, sizeof push);
             struct body_skin *skin = sim->bodies.list[deform->list[push.body].body].skin;
             for (int x = 0; x < 3; x++)
-                exact_sum_merge(&skin->force[push.vertex][x], &push.force[x]);
+                exact_sum_merge(&body_skin_push(skin, push.vertex)[x], &push.force[x]);
         }
 }

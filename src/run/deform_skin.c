@@ -63,6 +63,8 @@ void deform_skin_add(struct deform_skin *skin, struct body *body, int n_nodes, i
     }
     body->skin->force =
         array_resize(body->skin->force, had, (size_t)skin->n_points, sizeof *body->skin->force);
+    body->skin->pushed = array_resize(body->skin->pushed, had, (size_t)skin->n_points,
+                                      sizeof *body->skin->pushed);
     free(point);
 }
 
@@ -129,16 +131,20 @@ void deform_skin_place(const struct deform_body *deform, struct body *body)
         const double speed2 = vec3_dot(velocity, velocity);
         mesh->place[v] = place_of(deform, v);
         body->skin->velocity[v] = velocity;
-        memset(body->skin->force[v], 0, sizeof body->skin->force[v]);
         speed2_max = speed2 > speed2_max ? speed2 : speed2_max;
     }
-    for (int p = mesh->n_corners; p < skin->n_points; p++)
-        memset(body->skin->force[p], 0, sizeof body->skin->force[p]);
-    for (int k = skin->n_corners; k < skin->n_vertices; k++)
-        place_mean(mesh, skin->vertices[k]);
-    for (int k = 0; k < skin->n_faces; k++)
-        mesh_update_face(mesh, skin->faces[k]);
+    for (int p = 0; p < skin->n_points; p++)
+        if (body->skin->pushed[p])
+            memset(body->skin->force[p], 0, sizeof body->skin->force[p]);
+    memset(body->skin->pushed, 0, (size_t)skin->n_points * sizeof *body->skin->pushed);
+    body->skin->now++;
     body->speed_max = sqrt(speed2_max);
+}
+
+void deform_skin_place_faces(const struct deform_body *deform, const struct body *body)
+{
+    for (int k = 0; k < deform->skin.n_faces; k++)
+        body_renew_face(body, deform->skin.faces[k]);
 }
 
 /* Adds up what pushes a node: several vertices may be its own, in the order of their numbers.
@@ -162,20 +168,19 @@ void deform_skin_take_forces(struct deform_body *deform, const struct body *body
 {
     const struct deform_skin *skin = &deform->skin;
     struct solid *solid = &deform->solid;
-    const int n_corners = body->mesh.n_corners, n_inner = skin->n_points - n_corners;
-    for (int k = 0; k < skin->n_corners; k++) {
-        const int node = skin->nodes[skin->vertices[k]];
-        memset(solid->contact[node], 0, sizeof solid->contact[node]);
-        if (solid->turns.n_nodes > 0)
-            memset(solid->turns.contact[node], 0, sizeof solid->turns.contact[node]);
-    }
-    for (int p = n_corners; p < skin->n_points; p++)
+    for (int p = 0; p < skin->n_points; p++) {
+        if (!body->skin->pushed[p])
+            continue;
         memset(solid->contact[skin->nodes[p]], 0, sizeof *solid->contact);
-    for (int k = 0; k < skin->n_corners + n_inner; k++) {
-        const int v = k < skin->n_corners ? skin->vertices[k] : n_corners + k - skin->n_corners;
-        if (solid->moves[skin->nodes[v]])
-            take_force(solid, skin->nodes[v], arm_of(skin, v), body->skin->force[v]);
+        if (solid->turns.n_nodes > 0)
+            memset(solid->turns.contact[skin->nodes[p]], 0, sizeof *solid->turns.contact);
     }
+    for (int p = 0; p < skin->n_points; p++)
+        if (body->skin->pushed[p] && solid->moves[skin->nodes[p]])
+            take_force(solid, skin->nodes[p],
+                       p < body->mesh.n_corners ? arm_of(skin, p)
+                                                : (struct vec3){0.0, 0.0, 0.0},
+                       body->skin->force[p]);
 }
 
 /* A face without a normal is not found, wherever its borders may be. */
@@ -261,6 +266,7 @@ void deform_skin_renew(struct deform_body *deform, struct body *body)
     if (skin->n_vertices < mesh->n_vertices)
         place_nowhere(mesh);
     deform_skin_place(deform, body);
+    deform_skin_place_faces(deform, body);
 }
 
 double deform_skin_speed(const struct deform_body *deform)
@@ -328,5 +334,6 @@ void deform_skin_hide(struct simulation *sim)
         place_nowhere(&body->mesh);
         deform_skin_forget(&sim->deform.list[k].skin, &body->mesh);
         deform_skin_place(&sim->deform.list[k], body);
+        deform_skin_place_faces(&sim->deform.list[k], body);
     }
 }

@@ -43,6 +43,8 @@ void deform_skin_renew(struct deform_body *deform, struct body *body);
 /* Puts what is here where its nodes are, with their velocities, and takes all forces from it.
  * Local. */
 void deform_skin_place(const struct deform_body *deform, struct body *body);
+/* Brings all faces here to where their corners are, before a search.  Local. */
+void deform_skin_place_faces(const struct deform_body *deform, const struct body *body);
 /* Contacts' forces on the vertices become those on nodes that are moved here, and moments where
  * these turn.  Local. */
 void deform_skin_take_forces(struct deform_body *deform, const struct body *body);

@@ -452,6 +452,7 @@ int insertions_try(struct simulation *sim, const unsigned char *removed)
     if (!any)
         return 0;
     deform_skin_show(sim);
+    deform_place_faces(sim);
     facet_contacts_refit(&sim->facets, &sim->bodies);
     move_solids(sim);
     fill_crowd(sim, removed);

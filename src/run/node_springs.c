@@ -93,6 +93,8 @@ static void add_contacts(struct entries *entries, const struct simulation *sim, 
         if (!(width > 0.0) || !(meets || is_own))
             continue;
         if (meets)
+            body_renew_face(body, contact->feature);
+        if (meets)
             share = share_of(&body->mesh, contact->feature, sphere_place(spheres, i));
         for (int m = 0; m < share.n; m++)
             yield +=

@@ -263,6 +263,7 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
     const struct job *job = sim->job;
     runtime_begin(&sim->runtime);
     const bool renew = is_multiple(sim->step, job->order_every);
+    deform_place_faces(sim);
     wrap_places(sim);
     if (renew)
         order_renew(&sim->spheres, sim->comm);
@@ -287,6 +288,7 @@ void redistribute(struct simulation *sim, const unsigned char *removed)
 void redistribute_first(struct simulation *sim)
 {
     sim->asked_most = ASKED_LEAST;
+    deform_place_faces(sim);
     if (has_fixed_grid(sim))
         boxes_set_grid(&sim->boxes, sim->job->decomposition.fixed, sim->job->domain.min,
                        sim->job->domain.max);

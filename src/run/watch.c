@@ -172,6 +172,8 @@ static void fill_matrices(const struct simulation *sim, const int *slots,
         const struct facet_contact *contact = &sim->facets.list[k];
         if (!facet_contact_touched(contact) || slots[contact->sphere] < 0)
             continue;
+        if (sim->bodies.list[contact->body].skin != NULL)
+            body_renew_face(&sim->bodies.list[contact->body], contact->feature);
         const struct vec3 n =
             contact_geometry_closest(&sim->bodies.list[contact->body].mesh, contact->feature,
                                      sphere_place(&sim->spheres, contact->sphere))
@@ -612,6 +614,8 @@ static void find_deepest_facet(const struct simulation *sim, struct deepest *dee
             &sim->materials.pairs[spheres->material[i] * sim->materials.n + body->material];
         const struct vec3 x = sphere_place(spheres, i);
         const double curvature = sphere_curvature(spheres, i);
+        if (body->skin != NULL)
+            body_renew_face(body, contact->feature);
         const double distance =
             contact_geometry_closest(&body->mesh, contact->feature, x).distance;
         const double overlap = overlap_of(pair, contact->history[CONTACT_RADIUS_LANE],
