@@ -431,9 +431,8 @@ static void make_room(struct facet_contacts *facets, int n)
 }
 
 /* Gives the force of a batch's contact to the corners of a surface that deforms: that of the
- * normal spring as a pressure on the covered area, all else by the corners' weights.  Shares
- * are rounded as the sums round them; the last one is what is left, so that they add up to the
- * force. */
+ * normal spring as a pressure on the covered area, all else by the corners' weights.  The last
+ * one has what is left, so that shares add up to the force but for rounding. */
 static void push_skin(const struct step *step, int k)
 {
     const struct facet_work *work = step->facets->work;
@@ -445,14 +444,15 @@ static void push_skin(const struct step *step, int k)
     struct exact_sum *last = body_skin_push(skin, work->corners[pushed->end - 1].corner);
     for (int x = 0; x < 3; x++) {
         const double force = work->batch.force[x][k], rest = force - elastic[x];
-        exact_sum_add(&last[x], force);
+        double left = force;
         for (int c = pushed->begin; c < pushed->end - 1; c++) {
             const struct facet_patch_corner *corner = &work->corners[c];
             const double area[3] = {corner->pushed.x, corner->pushed.y, corner->pushed.z};
             const double share = corner->weight * rest - pushed->pressure * area[x];
-            struct exact_sum *own = body_skin_push(skin, corner->corner);
-            exact_sum_add(&last[x], -exact_sum_add(&own[x], share));
+            exact_sum_add(&body_skin_push(skin, corner->corner)[x], share);
+            left -= share;
         }
+        exact_sum_add(&last[x], left);
     }
     if (!pushed->holds_energy)
         work->batch.contact[k]->overlap = 0.0;
@@ -625,6 +625,7 @@ static void end_group(const struct step *step, int begin, int end)
 
 enum {
     LONG_GROUP = 6,     /* shorter ones are looked at as a whole */
+    LONG_PATCH = 2,     /* of a body that deforms: to look at a face costs more */
     RUN_MOST = 1 << 16, /* contacts */
 };
 /* How far beyond touching counts as near: of the radius, and in steps of the present speed. */
@@ -745,7 +746,7 @@ static void look_around(const struct step *step, struct group *group, struct vec
     const double speed = vec3_norm(vec3_of(sphere_velocity(step->spheres, entries->sphere))) +
                          (body->moves ? body->speed_max : 0.0);
     const int n = group->end - group->begin;
-    const bool is_long = n >= LONG_GROUP;
+    const bool is_long = n >= (body->skin != NULL ? LONG_PATCH : LONG_GROUP);
     group->n_near = 0;
     group->from = centre;
     group->travelled = work->travelled[entries->body];

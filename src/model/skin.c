@@ -57,7 +57,7 @@ static int count_facets(const struct solid_mesh *mesh, int n_sides)
 {
     int n = n_sides;
     for (int e = 0; e < mesh->n_elements; e++)
-        n += solid_mesh_is_sheet(mesh->elements[e]) ? 5 : 0; /* below, and four rims */
+        n += solid_mesh_is_sheet(mesh->elements[e]) ? 7 : 0; /* more: two a side, four rims */
     return n;
 }
 
@@ -264,11 +264,10 @@ static void add_sheet(struct skin *skin, const struct draft *draft, int s, const
     int above[4];
     for (int k = 0; k < n; k++)
         above[k] = skin->n_plain + 2 * rings[k];
-    add_facet(skin, above[0], above[1], above[2], n == 4 ? above[3] : -1);
-    if (n == 4)
-        add_facet(skin, above[3] + 1, above[2] + 1, above[1] + 1, above[0] + 1);
-    else
-        add_facet(skin, above[2] + 1, above[1] + 1, above[0] + 1, -1);
+    for (int k = 2; k < n; k++) { /* triangles: cheaper than four about a mean point */
+        add_facet(skin, above[0], above[k - 1], above[k], -1);
+        add_facet(skin, above[k] + 1, above[k - 1] + 1, above[0] + 1, -1);
+    }
     for (int k = 0; k < n; k++) {
         /* side k of what is seen from below is another of the element itself */
         const int own = draft->flipped[s] ? (2 * n - 2 - k) % n : k;

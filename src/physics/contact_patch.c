@@ -131,21 +131,23 @@ bool contact_patch_cut(const struct mesh *mesh, int face, struct vec3 centre, do
             return false;
         is_whole = is_whole && !is_cut;
     }
-    circle.around = sqrt(square);
     const struct vec3 foot = vec3_axpy(centre, -height, normal);
+    patch->is_whole = is_whole;
+    patch->height = circle.height;
     if (is_whole) {
-        circle.angle = 2.0 * PI;
+        patch->area = PI * square;
+        patch->volume = 2.0 * PI * sector_volume(&circle);
+        patch->middle = foot;
     } else {
+        circle.around = sqrt(square);
         /* A circle that goes past a corner meets no side.  Angles about its middle then add up
          * to nothing, but for rounding. */
         bool meets = false;
         for (int k = 0; k < 3; k++)
             meets = add_side(&circle, &border[k], foot) || meets;
-        if (!meets)
+        if (!meets || !finish(&circle, foot, patch))
             return false;
     }
-    if (!finish(&circle, foot, patch))
-        return false;
     patch->volume = height < 0.0 ? -patch->volume : patch->volume;
     weigh(mesh, face, patch);
     return true;

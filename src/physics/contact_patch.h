@@ -19,6 +19,8 @@
 #include "model/mesh.h"
 
 struct contact_patch {
+    bool is_whole;      /* is all of the circle in which the ball meets the plane within it? */
+    double height;      /* of the centre over the plane, of either side [m] */
     double area;        /* of the face within the ball [m2] */
     double volume;      /* of the ball behind that, in the cone from the centre; negative where
                            the face is seen from behind [m3] */
