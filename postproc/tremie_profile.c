@@ -1,10 +1,11 @@
 /*
- * tremie-profile: stress and plastic strain of a deformable body against depth below one of its
- * sides, from a snapshot.
+ * tremie-profile: stress, plastic strain and what presses on a deformable body against depth
+ * below one of its sides, from a snapshot, or from several of a run in the mean.
  *
  * Depth is that of an element's middle at the start, so an element stays in its slice while the
- * body deforms.  Means are weighted by the elements' volume at the start; elements that have
- * failed are left out.
+ * body deforms.  Means are weighted by the elements' volume at the start, of shells and
+ * membranes by their area; elements that have failed are left out.  The pressure on a sheet is
+ * the mean of its corners', the stress in it that of its middle.
  */
 #include <errno.h>
 #include <inttypes.h>
@@ -26,7 +27,7 @@
 enum { SLICES_MOST = 100000, NOTHING_TO_REPORT = 1 };
 
 /* What is shown, in this order, where the snapshot has it. */
-enum { STRESSES = 6, MISES = STRESSES, PLASTIC, FLOWED, N_VALUES };
+enum { STRESSES = 6, MISES = STRESSES, PLASTIC, FLOWED, PRESSURE, N_VALUES };
 
 static const struct {
     const char *name; /* of a column of the table */
@@ -37,15 +38,16 @@ static const struct {
     {"stress", "stress_zz", "Pa", 2},     {"stress", "stress_xy", "Pa", 3},
     {"stress", "stress_yz", "Pa", 4},     {"stress", "stress_zx", "Pa", 5},
     {"von_mises", "von_mises", "Pa", 0},  {"plastic_strain", "plastic_strain", "1", 0},
-    {"plastic_strain", "flowed", "1", 0},
+    {"plastic_strain", "flowed", "1", 0}, {"contact_pressure", "contact_pressure", "Pa", 0},
 };
 
 static const char *const sides[] = {"x_min", "x_max", "y_min", "y_max", "z_min", "z_max", NULL};
 
 struct profile {
+    int n_snapshots;
     int n;                    /* slices */
     double *depth;            /* of their middles [m] */
-    double *volume;           /* of the elements in each [m3] */
+    double *volume;           /* of the elements in each, or their area [m3], [m2] */
     double *count;            /* of these */
     double *values[N_VALUES]; /* means; NULL: not in the snapshot */
 };
@@ -62,8 +64,43 @@ static void corner_place(const struct snapshot_solid *solid, int64_t e, int c, d
 static int n_corners(const struct snapshot_solid *solid, int64_t e)
 {
     const int width = solid->parts[SNAPSHOT_CORNERS].width;
-    const int32_t *corners = solid->parts[SNAPSHOT_CORNERS].rows;
-    return width == 8 && corners[e * width + 4] >= 0 ? 8 : 4;
+    const int32_t *corners = (const int32_t *)solid->parts[SNAPSHOT_CORNERS].rows + e * width;
+    return width == 8 && corners[4] >= 0 ? 8 : corners[3] >= 0 ? 4 : 3;
+}
+
+/* Which elements are of shells and membranes; NULL: none.  The caller frees it. */
+static bool *find_sheets(const struct snapshot_solid *solid)
+{
+    enum { QUAD = 5, HEXAHEDRON = 9 }; /* XDMF's; triangles come before, tetrahedra between */
+    const int32_t *cell = solid->parts[SNAPSHOT_CELLS].rows;
+    bool *sheets =
+        solid->mixed ? array_allocate((size_t)solid->n_elements, sizeof *sheets) : NULL;
+    for (int64_t e = 0; solid->mixed && e < solid->n_elements; e++) {
+        sheets[e] = *cell <= QUAD;
+        cell += 1 + (*cell == HEXAHEDRON ? 8 : n_corners(solid, e));
+    }
+    return sheets;
+}
+
+/* Twice the area of the triangle of three corners. */
+static double twice_area(const struct snapshot_solid *solid, int64_t e, int a, int b, int c)
+{
+    double x[3][3], n[3];
+    corner_place(solid, e, a, x[0]);
+    corner_place(solid, e, b, x[1]);
+    corner_place(solid, e, c, x[2]);
+    for (int k = 0; k < 3; k++) {
+        const int p = (k + 1) % 3, q = (k + 2) % 3;
+        n[k] = (x[1][p] - x[0][p]) * (x[2][q] - x[0][q]) -
+               (x[1][q] - x[0][q]) * (x[2][p] - x[0][p]);
+    }
+    return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
+}
+
+static double area_of(const struct snapshot_solid *solid, int64_t e)
+{
+    return 0.5 * (twice_area(solid, e, 0, 1, 2) +
+                  (n_corners(solid, e) == 4 ? twice_area(solid, e, 0, 2, 3) : 0.0));
 }
 
 static double tetrahedron_volume(const struct snapshot_solid *solid, int64_t e,
@@ -116,16 +153,35 @@ static bool is_alive(const struct snapshot_solid *solid, int64_t e)
     return alive > 0.0;
 }
 
-static void add_element(struct profile *profile, const struct snapshot_solid *solid, int64_t e,
-                        int slice)
+/* Mean of what presses on the corners. */
+static double pressure_on(const struct snapshot_solid *solid, int64_t e)
 {
-    const double volume = volume_of(solid, e);
+    const int column = snapshot_column(&solid->nodes, "contact_pressure");
+    const int width = solid->parts[SNAPSHOT_CORNERS].width, n = n_corners(solid, e);
+    const int32_t *corners = (const int32_t *)solid->parts[SNAPSHOT_CORNERS].rows + e * width;
+    double sum = 0.0;
+    for (int c = 0; c < n; c++) {
+        double pressure;
+        snapshot_get(&solid->nodes, corners[c], column, &pressure);
+        sum += pressure;
+    }
+    return sum / n;
+}
+
+static void add_element(struct profile *profile, const struct snapshot_solid *solid, int64_t e,
+                        bool is_sheet, int slice)
+{
+    const double volume = is_sheet ? area_of(solid, e) : volume_of(solid, e);
     profile->volume[slice] += volume;
     profile->count[slice] += 1.0;
     for (int v = 0; v < N_VALUES; v++) {
         double numbers[STRESSES];
         if (profile->values[v] == NULL)
             continue;
+        if (v == PRESSURE) {
+            profile->values[v][slice] += is_sheet ? volume * pressure_on(solid, e) : 0.0;
+            continue;
+        }
         snapshot_get(&solid->elements, e, snapshot_column(&solid->elements, VALUES[v].name),
                      numbers);
         const double number = numbers[VALUES[v].component];
@@ -147,15 +203,16 @@ static double depth_of(const struct snapshot_solid *solid, int64_t e, int side,
 }
 
 static void begin_profile(struct profile *profile, const struct snapshot_solid *solid,
-                          double width, int n)
+                          bool has_sheets, double width, int n)
 {
     const size_t size = (size_t)n;
-    *profile = (struct profile){.n = n};
+    profile->n = n;
     profile->depth = array_allocate(size, sizeof *profile->depth);
     profile->volume = array_allocate(size, sizeof *profile->volume);
     profile->count = array_allocate(size, sizeof *profile->count);
     for (int v = 0; v < N_VALUES; v++)
-        if (snapshot_column(&solid->elements, VALUES[v].name) >= 0)
+        if (v == PRESSURE ? has_sheets && snapshot_column(&solid->nodes, VALUES[v].name) >= 0
+                          : snapshot_column(&solid->elements, VALUES[v].name) >= 0)
             profile->values[v] = array_allocate(size, sizeof *profile->values[v]);
     for (int k = 0; k < n; k++)
         profile->depth[k] = (k + 0.5) * width;
@@ -169,7 +226,7 @@ static void finish_profile(struct profile *profile)
         if (!(profile->count[k] > 0.0))
             continue;
         profile->depth[n] = profile->depth[k];
-        profile->count[n] = profile->count[k];
+        profile->count[n] = profile->count[k] / profile->n_snapshots;
         for (int v = 0; v < N_VALUES; v++)
             if (profile->values[v] != NULL)
                 profile->values[v][n] = profile->values[v][k] / profile->volume[k];
@@ -178,19 +235,23 @@ static void finish_profile(struct profile *profile)
     profile->n = n;
 }
 
-static void make_profile(struct profile *profile, const struct snapshot_solid *solid, int side,
+/* Adds a snapshot to the sums; the first one begins them. */
+static void add_snapshot(struct profile *profile, const struct snapshot_solid *solid, int side,
                          int n)
 {
     double extent[2];
+    bool *sheets = find_sheets(solid);
     find_extent(solid, side / 2, extent);
     const double width = (extent[1] - extent[0]) / n;
-    begin_profile(profile, solid, width, n);
+    if (profile->n_snapshots++ == 0)
+        begin_profile(profile, solid, sheets != NULL, width, n);
     for (int64_t e = 0; e < solid->n_elements; e++) {
         const int slice = (int)(depth_of(solid, e, side, extent) / width);
         if (is_alive(solid, e))
-            add_element(profile, solid, e, slice < n ? slice : n - 1);
+            add_element(profile, solid, e, sheets != NULL && sheets[e],
+                        slice < n ? slice : n - 1);
     }
-    finish_profile(profile);
+    free(sheets);
 }
 
 static void clear_profile(struct profile *profile)
@@ -252,51 +313,35 @@ static int write_svg(const struct profile *profile, const char *name, const char
 struct request {
     const char *path, *body, *csv, *svg;
     int side;
-    double slices;
+    double slices, since;
 };
 
-static int show(const struct request *request, const struct snapshot *snapshot,
-                const struct snapshot_solid *solid)
+static int show(const struct request *request, struct profile *profile, const char *name,
+                double time)
 {
-    struct profile profile;
     struct sheet sheet;
-    if (snapshot_column(&solid->elements, "stress") < 0 &&
-        snapshot_column(&solid->elements, "von_mises") < 0 &&
-        snapshot_column(&solid->elements, "plastic_strain") < 0) {
-        printf("the snapshot has neither stress nor plastic strain of %s; ask for it in "
-               "output.snapshots.solids\n",
-               solid->name);
-        return NOTHING_TO_REPORT;
-    }
-    make_profile(&profile, solid, request->side, (int)request->slices);
-    printf("%s at %.6g s, depth below %s\n\n", solid->name,
-           (double)snapshot->step * snapshot->dt, sides[request->side]);
-    fill_sheet(&sheet, &profile, 5);
+    finish_profile(profile);
+    if (profile->n_snapshots > 1)
+        printf("%s, mean of %d snapshots up to %.6g s, depth below %s\n\n", name,
+               profile->n_snapshots, time, sides[request->side]);
+    else
+        printf("%s at %.6g s, depth below %s\n\n", name, time, sides[request->side]);
+    fill_sheet(&sheet, profile, 5);
     sheet_print(&sheet, stdout);
     sheet_clear(&sheet);
     int status = REPORT_FINISHED;
     if (request->csv != NULL) {
-        fill_sheet(&sheet, &profile, 12);
+        fill_sheet(&sheet, profile, 12);
         status = sheet_write_csv(&sheet, request->csv);
         sheet_clear(&sheet);
     }
     if (request->svg != NULL && status == REPORT_FINISHED)
-        status = write_svg(&profile, solid->name, request->svg);
-    clear_profile(&profile);
+        status = write_svg(profile, name, request->svg);
     return status;
 }
 
-/* The body asked for, or the only one. */
-static int choose(const struct request *request, const struct snapshot *snapshot)
+static void say_which(const struct request *request, const struct snapshot *snapshot)
 {
-    for (int s = 0; s < snapshot->n_solids; s++)
-        if (request->body != NULL ? strcmp(snapshot->solids[s].name, request->body) == 0
-                                  : snapshot->n_solids == 1)
-            return show(request, snapshot, &snapshot->solids[s]);
-    if (snapshot->n_solids == 0) {
-        printf("%s has no deformable body\n", request->path);
-        return NOTHING_TO_REPORT;
-    }
     char *names = array_string("");
     for (int s = 0; s < snapshot->n_solids; s++) {
         char *longer =
@@ -309,52 +354,106 @@ static int choose(const struct request *request, const struct snapshot *snapshot
                                        : "there are several deformable bodies",
                  names);
     free(names);
-    return REPORT_BAD_INPUT;
 }
 
-/* The file, or the newest snapshot of a run; NULL with the reason said. */
-static char *find_snapshot(const char *path)
+/* The body asked for, or the only one; NULL with what is wrong said. */
+static const struct snapshot_solid *choose(const struct request *request,
+                                           const struct snapshot *snapshot, int *status)
 {
-    struct stat entry;
-    if (stat(path, &entry) != 0) {
-        report_error("there is no %s; give a snapshot or the folder of a run", path);
+    *status = NOTHING_TO_REPORT;
+    for (int s = 0; s < snapshot->n_solids; s++) {
+        const struct snapshot_solid *solid = &snapshot->solids[s];
+        if (request->body != NULL ? strcmp(solid->name, request->body) != 0
+                                  : snapshot->n_solids > 1)
+            continue;
+        if (snapshot_column(&solid->elements, "stress") >= 0 ||
+            snapshot_column(&solid->elements, "von_mises") >= 0 ||
+            snapshot_column(&solid->elements, "plastic_strain") >= 0)
+            return solid;
+        printf("the snapshot has neither stress nor plastic strain of %s; ask for it in "
+               "output.snapshots.solids\n",
+               solid->name);
         return NULL;
     }
-    if (!S_ISDIR(entry.st_mode))
-        return array_string(path);
-    char *folder = array_format("%s/snapshots", path);
-    int64_t *steps;
-    const int n = file_steps(folder, &steps);
-    char *newest = n > 0 ? file_step_path(folder, steps[n - 1]) : NULL;
-    if (newest == NULL)
-        report_error("%s has no snapshot; ask for some with output.snapshots in the job", path);
-    free(steps);
-    free(folder);
-    return newest;
+    if (snapshot->n_solids == 0) {
+        printf("%s has no deformable body\n", request->path);
+        return NULL;
+    }
+    say_which(request, snapshot);
+    *status = REPORT_BAD_INPUT;
+    return NULL;
 }
 
-static int run(const struct request *request)
+/* Reads a snapshot and adds it, unless it is too early. */
+static int add_file(const struct request *request, const char *path, bool is_last,
+                    struct profile *profile, char **name, double *time)
 {
     struct snapshot snapshot;
-    char *path = find_snapshot(request->path);
-    if (path == NULL)
-        return REPORT_BAD_INPUT;
     char *why = snapshot_read(path, &snapshot);
     int status = REPORT_STORAGE;
     if (why != NULL) {
         report_error("cannot read the snapshot %s: %s; use another one", path, why);
-    } else {
-        status = choose(request, &snapshot);
-        snapshot_clear(&snapshot);
+        free(why);
+        return status;
     }
-    free(why);
-    free(path);
+    const struct snapshot_solid *solid = choose(request, &snapshot, &status);
+    if (solid != NULL) {
+        status = REPORT_FINISHED;
+        *time = (double)snapshot.step * snapshot.dt;
+        if (is_last || *time >= request->since)
+            add_snapshot(profile, solid, request->side, (int)request->slices);
+        free(*name);
+        *name = array_string(solid->name);
+    }
+    snapshot_clear(&snapshot);
+    return status;
+}
+
+/* The file, or the newest snapshot of a run, or all of them that are late enough. */
+static int add_all(const struct request *request, struct profile *profile, char **name,
+                   double *time)
+{
+    struct stat entry;
+    if (stat(request->path, &entry) != 0) {
+        report_error("there is no %s; give a snapshot or the folder of a run", request->path);
+        return REPORT_BAD_INPUT;
+    }
+    if (!S_ISDIR(entry.st_mode))
+        return add_file(request, request->path, true, profile, name, time);
+    char *folder = array_format("%s/snapshots", request->path);
+    int64_t *steps;
+    const int n = file_steps(folder, &steps);
+    int status = n > 0 ? REPORT_FINISHED : REPORT_BAD_INPUT;
+    if (n == 0)
+        report_error("%s has no snapshot; ask for some with output.snapshots in the job",
+                     request->path);
+    for (int k = isfinite(request->since) ? 0 : n - 1; k < n && status == REPORT_FINISHED;
+         k++) {
+        char *path = file_step_path(folder, steps[k]);
+        status = add_file(request, path, k == n - 1, profile, name, time);
+        free(path);
+    }
+    free(steps);
+    free(folder);
+    return status;
+}
+
+static int run(const struct request *request)
+{
+    struct profile profile = {.n = 0};
+    char *name = NULL;
+    double time;
+    int status = add_all(request, &profile, &name, &time);
+    if (status == REPORT_FINISHED)
+        status = show(request, &profile, name, time);
+    clear_profile(&profile);
+    free(name);
     return status;
 }
 
 int main(int argc, char **argv)
 {
-    struct request request = {.side = 5, .slices = 20.0};
+    struct request request = {.side = 5, .slices = 20.0, .since = (double)INFINITY};
     const struct arguments_entry entries[] = {
         {"body", 0, ARGUMENTS_TEXT, &request.body, "NAME",
          "the deformable body; needed where there are several", NULL},
@@ -364,6 +463,8 @@ int main(int argc, char **argv)
          "into how many slices the body is cut, by default 20; those without an element's "
          "middle are left out",
          NULL},
+        {"since", 0, ARGUMENTS_NUMBER, &request.since, "TIME",
+         "of a run's folder the mean of all snapshots from this time on [s]", NULL},
         {"csv", 0, ARGUMENTS_TEXT, &request.csv, "FILE",
          "writes the slices as comma-separated values", NULL},
         {"svg", 0, ARGUMENTS_TEXT, &request.svg, "FILE",
@@ -371,10 +472,12 @@ int main(int argc, char **argv)
     };
     const struct arguments_page page = {
         "tremie-profile",
-        "SNAPSHOT|RUN [--body NAME] [--from SIDE] [--slices N] [--csv FILE] [--svg FILE]",
+        "SNAPSHOT|RUN [--body NAME] [--from SIDE] [--slices N] [--since TIME]\n"
+        "    [--csv FILE] [--svg FILE]",
         "Shows mean stress and plastic strain of a deformable body's elements in slices below one\n"
-        "of its sides, and the share of them that has flowed, weighted by volume.  Depth is that\n"
-        "at the start.  Of a run's folder the newest snapshot is taken.\n"
+        "of its sides, and the share of them that has flowed, weighted by volume; of shells and\n"
+        "membranes by area, and the mean pressure of what touches them.  Depth is that at the\n"
+        "start.  Of a run's folder the newest snapshot is taken.\n"
         "\n"
         "Exit status: 0 shown; 1 nothing to show (no deformable body, no stress); 2 bad arguments;\n"
         "4 a file cannot be read or written.\n",

@@ -30,11 +30,13 @@
 #include "model/sphere.h"
 #include "physics/contact_geometry.h"
 #include "physics/contact_law.h"
+#include "physics/contact_patch.h"
 
 /* The entries of a sphere with a body, begin to end of the list; `near` numbers those from
  * begin on that may touch until the two have moved by `slack`. */
 struct group {
     int begin, end, n_near;
+    int sphere;       /* index */
     double slack;     /* [m]; negative: not looked at yet */
     double travelled; /* by the body when it was looked at [m] */
     struct vec3 from; /* where the sphere was [m] */
@@ -627,14 +629,16 @@ enum {
     LONG_GROUP = 6,     /* shorter ones are looked at as a whole */
     LONG_PATCH = 2,     /* of a body that deforms: to look at a face costs more */
     RUN_MOST = 1 << 16, /* contacts */
+    AHEAD = 6,          /* groups */
 };
 /* How far beyond touching counts as near: of the radius, and in steps of the present speed. */
 static const double NEAR_RADII = 0.05, NEAR_STEPS = 8.0;
 
-static void add_group(struct facet_work *work, int begin, int end)
+static void add_group(struct facet_work *work, int begin, int end, int sphere)
 {
     ARRAY_GROW(work->groups, work->n_groups + 1, work->group_capacity);
-    work->groups[work->n_groups++] = (struct group){.begin = begin, .end = end, .slack = -1.0};
+    work->groups[work->n_groups++] =
+        (struct group){.begin = begin, .end = end, .sphere = sphere, .slack = -1.0};
 }
 
 /* May the kernel find out by itself whether these touch, all that is listed of a sphere? */
@@ -688,7 +692,7 @@ static void list_runs(struct facet_contacts *facets, const struct bodies *bodies
         if (end - k < FACET_KERNEL_PAD / 2) {
             for (int m = k; m < end; m++)
                 add_group(work, (int)(work->plain[m] - facets->list),
-                          (int)(work->plain[m] - facets->list) + 1);
+                          (int)(work->plain[m] - facets->list) + 1, work->plain[m]->sphere);
             continue;
         }
         struct facet_kernel_run run = {.body = &bodies->list[first->body],
@@ -728,12 +732,20 @@ static void list_groups(struct facet_contacts *facets, const struct spheres *sph
         }
         for (int begin = k, m = k + 1; m <= end; m++)
             if (m == end || list[m].body != list[begin].body) {
-                add_group(work, begin, m);
+                add_group(work, begin, m, list[k].sphere);
                 begin = m;
             }
     }
     list_runs(facets, bodies);
     work->has_groups = true;
+}
+
+static bool is_near(const struct body *body, int feature, struct vec3 centre, double reach)
+{
+    if (body->skin == NULL)
+        return contact_geometry_reaches(&body->mesh, feature, centre, reach);
+    body_renew_face(body, feature);
+    return contact_patch_reaches(&body->mesh, feature, centre, reach);
 }
 
 /* Finds out which entries of a group are near. */
@@ -752,12 +764,9 @@ static void look_around(const struct step *step, struct group *group, struct vec
     group->travelled = work->travelled[entries->body];
     group->slack = is_long ? NEAR_RADII * radius + NEAR_STEPS * step->kernel_work->dt * speed
                            : (double)INFINITY;
-    for (int k = 0; k < n && is_long && body->skin != NULL; k++)
-        body_renew_face(body, entries[k].feature);
     for (int k = 0; k < n; k++)
         if (!is_long || facet_contact_touched(&entries[k]) ||
-            contact_geometry_reaches(&body->mesh, entries[k].feature, centre,
-                                     radius + group->slack))
+            is_near(body, entries[k].feature, centre, radius + group->slack))
             work->near[group->begin + group->n_near++] = k;
 }
 
@@ -842,6 +851,18 @@ static void gather_one(const struct step *step, int entry)
     }
 }
 
+/* Lists are longer than caches: what comes soon is asked for before. */
+static void fetch_group(const struct step *step, const struct group *group)
+{
+    enum { LINE = 64 };
+    const struct facet_work *work = step->facets->work;
+    const int entry = group->begin + (group->n_near > 0 ? work->near[group->begin] : 0);
+    const char *contact = (const char *)&step->facets->list[entry];
+    for (size_t at = 0; at < sizeof(struct facet_contact); at += LINE)
+        __builtin_prefetch(contact + at, 1);
+    __builtin_prefetch(&step->spheres->motion[group->sphere]);
+}
+
 void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres,
                           const struct bodies *bodies, const struct materials *materials,
                           double dt, bool ledger)
@@ -867,6 +888,8 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
         apply_run(&step, &work->runs[r]);
     for (int g = 0; g < work->n_groups; g++) {
         struct group *group = &work->groups[g];
+        if (g + AHEAD < work->n_groups)
+            fetch_group(&step, &work->groups[g + AHEAD]);
         const struct body *body = &bodies->list[facets->list[group->begin].body];
         if (!body->exists)
             end_group(&step, group->begin, group->end);

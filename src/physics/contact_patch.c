@@ -112,6 +112,20 @@ static void weigh(const struct mesh *mesh, int face, struct contact_patch *patch
     patch->weights[1] = left;
 }
 
+bool contact_patch_reaches(const struct mesh *mesh, int face, struct vec3 centre, double radius)
+{
+    const struct mesh_border *border = mesh->face_borders[face];
+    const double height = vec3_dot(vec3_sub(centre, border[0].from), mesh->face_normal[face]);
+    const double square = (radius - height) * (radius + height);
+    bool reaches = square > 0.0;
+    for (int k = 0; k < 3; k++) {
+        const double within = inside(&border[k], centre);
+        reaches =
+            reaches && (within > 0.0 || within * within < square * border[k].length_squared);
+    }
+    return reaches;
+}
+
 bool contact_patch_cut(const struct mesh *mesh, int face, struct vec3 centre, double radius,
                        struct contact_patch *patch)
 {

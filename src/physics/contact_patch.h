@@ -32,6 +32,11 @@ struct contact_patch {
 bool contact_patch_cut(const struct mesh *mesh, int face, struct vec3 centre, double radius,
                        struct contact_patch *patch);
 
+/* Whether a ball of this radius may cover something of it; near a corner it says so also where
+ * it just does not. */
+bool contact_patch_reaches(const struct mesh *mesh, int face, struct vec3 centre,
+                           double radius);
+
 /* How deep a ball is in a half-space that takes this volume of it: at most its radius [m]. */
 double contact_patch_depth(double volume, double radius);
 
