@@ -24,11 +24,13 @@ static void add_element(const struct solid *solid, int e, struct solid_energies 
 {
     const struct solid_element_state *state = &solid->state[e];
     const struct solid_element_material *material = &solid->materials[solid->material[e]];
-    const double elastic = shell_element_is(solid->shape[e])
+    const bool is_sheet = shell_element_is(solid->shape[e]);
+    const double bent = is_sheet ? material->hourglass_stiffness * state->hourglass_work : 0.0;
+    const double elastic = is_sheet
                                ? shell_element_energy(solid->shape[e], state, &solid->shell[e],
                                                       solid->layers, material)
                                : solid_element_energy(state, material);
-    const double terms[] = {elastic, state->plastic_work, state->hourglass_work,
+    const double terms[] = {elastic + bent, state->plastic_work, state->hourglass_work - bent,
                             state->hourglass_damped, state->damped};
     for (int k = 0; k < (int)(sizeof terms / sizeof *terms); k++)
         exact_sum_add(&energies->sums[SOLID_ENERGY_ELASTIC + k], terms[k]);
