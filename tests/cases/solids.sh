@@ -54,7 +54,7 @@ stopped()
     rm -rf stopped
 }
 stopped 3.2e-7
-says "time.step = 3.2e-07 s is 1.02 of the critical step of body 'plate' with its contacts, 3.125e-07 s"
+says "time.step = 3.2e-07 s is 1.02 of the critical step there, 3.125e-07 s"
 result "a run goes by the same bound"
 
 # A cube of h = 0.1 m and c = 1000 m/s, nu = 0: 4 c^2/h^2 (12.11), with an eigenvalue from above. A sphere's linear spring of 1.5e8 N/m on one corner of
