@@ -10,6 +10,8 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "base/elementary.h"
+#include "base/vec3.h"
 #include "job/job.h"
 #include "model/body.h"
 #include "model/material.h"
@@ -410,15 +412,46 @@ struct solid_step solid_step_with_contacts(const struct job *job, const struct b
     return least;
 }
 
-double solid_step_auto(const struct job *job, const struct bodies *bodies,
-                       const struct materials *materials, const struct limits_spheres *spheres)
+double solid_step_flow(const struct job *job, const struct job_body *body)
+{
+    const struct job_material *material = &job->materials[body->material];
+    const double yield =
+        material->n_hardening_table > 0 ? material->hardening_table[0].stress : material->yield;
+    const struct vec3 v = body->solid.velocity;
+    return yield > 0.0 ? 0.5 * material->density * vec3_dot(v, v) / yield : 0.0;
+}
+
+/* What elements that become flat as their body stops will bear of what they bear at first. */
+static double flow_share(double flow)
+{
+    static const double FLATTER = 2.5, LEAST = 0.05;
+    const double share = elementary_exp(-FLATTER * flow);
+    return share > LEAST ? share : LEAST;
+}
+
+static double find_safe(const struct job *job, const struct bodies *bodies,
+                        const struct materials *materials, const struct limits_spheres *spheres,
+                        bool flows)
 {
     double least = (double)INFINITY;
     for (int b = 0; b < job->n_bodies; b++) {
         if (job->bodies[b].model != JOB_MODEL_SOLID)
             continue;
         const double step = solid_step_with_contacts(job, bodies, materials, spheres, b).step;
-        least = step < least ? step : least;
+        const double share = flows ? flow_share(solid_step_flow(job, &job->bodies[b])) : 1.0;
+        least = share * step < least ? share * step : least;
     }
     return ELEMENTS_SHARE * least;
+}
+
+double solid_step_safe(const struct job *job, const struct bodies *bodies,
+                       const struct materials *materials, const struct limits_spheres *spheres)
+{
+    return find_safe(job, bodies, materials, spheres, false);
+}
+
+double solid_step_auto(const struct job *job, const struct bodies *bodies,
+                       const struct materials *materials, const struct limits_spheres *spheres)
+{
+    return find_safe(job, bodies, materials, spheres, true);
 }

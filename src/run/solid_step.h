@@ -16,6 +16,7 @@
 
 struct bodies;
 struct job;
+struct job_body;
 struct limits_spheres;
 struct materials;
 
@@ -32,9 +33,16 @@ struct solid_step solid_step_alone(const struct job *job, int b);
 struct solid_step solid_step_with_contacts(const struct job *job, const struct bodies *bodies,
                                            const struct materials *materials,
                                            const struct limits_spheres *spheres, int b);
-/* What `step: auto` takes of the least of these, of all solids; infinite without any [s].
- * Local. */
+/* What is safe of the least of these, of all solids, as long as none flows much; infinite
+ * without any [s].  Local. */
+double solid_step_safe(const struct job *job, const struct bodies *bodies,
+                       const struct materials *materials, const struct limits_spheres *spheres);
+/* What `step: auto` takes: less where a solid will flow.  (12.21)  Local. */
 double solid_step_auto(const struct job *job, const struct bodies *bodies,
                        const struct materials *materials, const struct limits_spheres *spheres);
+
+/* By how much a solid would flow in the mean if all its motion at the start went into that; 0
+ * where it never yields [-].  Local. */
+double solid_step_flow(const struct job *job, const struct job_body *body);
 
 #endif

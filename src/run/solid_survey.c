@@ -255,16 +255,12 @@ static void print_sets(const struct solid_mesh *mesh)
 static void print_flow(const struct job *job, const struct job_body *body)
 {
     static const double MUCH = 0.05; /* strain */
-    const struct job_material *material = &job->materials[body->material];
-    const double yield =
-        material->n_hardening_table > 0 ? material->hardening_table[0].stress : material->yield;
-    const double v2 = vec3_dot(body->solid.velocity, body->solid.velocity);
-    const double strain = 0.5 * material->density * v2 / yield; /* of all its energy [-] */
-    if (yield > 0.0 && strain > MUCH)
-        report_say(
-            "          brought to rest it would flow by about %.3g in the mean, and by more "
-            "where it strikes: elements become narrower and allow less",
-            strain);
+    const double flow = solid_step_flow(job, body);
+    if (flow > MUCH)
+        report_say("          brought to rest it would flow by about %.3g in the mean, and by "
+                   "more where it strikes: elements become narrower and allow less, which auto "
+                   "foresees",
+                   flow);
 }
 
 /* What elements allow of the step by themselves, and with the contacts that may be expected. */
@@ -419,7 +415,7 @@ static void warn_of_step(const struct job *job, const struct bodies *bodies,
             "safe",
             body->name, step / met.step, solid_quality_node_number(mesh, met.node),
             element_name(mesh, met.element, name),
-            critical_step_round_down(solid_step_auto(job, bodies, NULL, NULL)));
+            critical_step_round_down(solid_step_safe(job, bodies, NULL, NULL)));
 }
 
 void solid_survey_warn(const struct job *job, const struct bodies *bodies, int b)

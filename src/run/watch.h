@@ -67,9 +67,9 @@ struct watch {
     double rate;     /* 1 / critical step of the present contacts, if it fails the run [1/s] */
     double rounding; /* of places, over what contacts can bear [-] */
     double radius_least; /* of all spheres at the start [m] */
-    /* The step is beyond what `step: auto` takes of what bodies that deform allow as they
-     * touch: they are looked at each step at which they do, for a light node soon leaves a
-     * stiff contact, with energy that it has not brought. */
+    /* The step is beyond what is safe as bodies that deform touch: they are looked at each step
+     * at which they do, for a light node soon leaves a stiff contact, with energy that it has
+     * not brought. */
     bool doubts_nodes;
     /* What all contacts of each body that forces move do to it, when last looked at. */
     struct critical_step_sums *loads;
