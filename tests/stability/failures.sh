@@ -184,6 +184,15 @@ job in_the_floor 1.0e-5 200 0 "$(sphere a 0.01 0 0 0.0089 0 0 0)" "  - $floor"
 refused in_the_floor "overlaps body 'floor'"
 job on_the_floor 1.0e-5 200 0 "$(sphere a 0.01 0 0 0.0091 0 0 0)" "  - $floor"
 fine on_the_floor "9 % instead of 11 % of a radius"
+block='  - {name: block, material: ore, model: solid, mesh: {kind: %s, cells: [4, 8, 4]}}'
+# shellcheck disable=SC2059
+job in_the_block 1.0e-6 200 0 "$(sphere a 0.01 0 0 0 0 0 0; sphere b 0.01 0 0 0.06 0 0 0)" \
+    "$(printf "$block" "cylinder, from: [0, 0, -0.04], to: [0, 0, 0.04], radius: 0.03")"
+refused in_the_block "is inside body 'block'"
+# shellcheck disable=SC2059
+job in_the_tube 1.0e-6 200 0 "$(sphere a 0.01 0 0 0 0 0 0)" \
+    "$(printf "$block" "tube, from: [0, 0, -0.04], to: [0, 0, 0.04], inner: 0.02, outer: 0.03")"
+fine in_the_tube "in a tube instead of a cylinder"
 # What a state brings along is not judged before the run.
 job deep_before 1.0e-5 1 0 "$(sphere a 0.01 0 0 0 0 0 0; sphere b 0.01 0.01895 0 0 0 0 0)" "" '$a watch: {overlap: 0.3}'
 alone run deep_before.yaml --out deep_before || why+=" the run before ends with status $?;"
