@@ -30,10 +30,6 @@
 #include "store/sphere_file.h"
 #include "store/surface_file.h"
 
-/* Share of the critical step of solids, with contacts, that the automatic step takes: elements
- * that are pressed together allow less. */
-static const double ELEMENTS_SHARE = 0.7;
-
 enum { ALL_PAIRS_MOST = 20000 }; /* 2e8 pairs */
 
 /* A box around points. */
@@ -180,7 +176,7 @@ static void choose_times(struct job *job, const struct bodies *bodies,
         inflow_add_limits(&limits, job, &materials, k);
     if (limits.rayleigh < 1e299)
         job->time.step = limits_step(&limits, job->time.safety);
-    const double solids = ELEMENTS_SHARE * solid_step_least(job, bodies, &materials, all);
+    const double solids = solid_step_auto(job, bodies, &materials, all);
     materials_clear(&materials);
     if (solids < 1e299 && (!(job->time.step > 0.0) || solids < job->time.step))
         job->time.step = critical_step_round_down(solids);

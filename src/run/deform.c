@@ -356,21 +356,54 @@ void deform_energies(struct simulation *sim, struct solid_energies *energies)
     }
 }
 
-double deform_critical_step(const struct simulation *sim, int *body)
+/* Of one body.  Several elements may allow as little: the first is named. */
+static struct deform_limit find_limit(const struct simulation *sim, int k, bool touched)
 {
-    double least = (double)INFINITY;
-    for (int k = 0; k < sim->deform.n; k++) {
-        struct node_springs springs;
-        node_springs_find(&springs, sim, k);
-        double step =
-            solid_limits_find(&sim->deform.list[k].solid, springs.stiffness, springs.damping)
-                .step;
-        node_springs_clear(&springs);
-        comm_min(sim->comm, &step, 1);
-        if (step < least) {
-            least = step;
-            *body = sim->deform.list[k].body;
+    const struct deform_body *deform = &sim->deform.list[k];
+    struct deform_limit limit = {(double)INFINITY, deform->body, -1, -1};
+    struct node_springs springs;
+    node_springs_find(&springs, sim, k);
+    if (springs.any || !touched) {
+        const struct solid_limits own = (touched ? solid_limits_touched : solid_limits_find)(
+            &deform->solid, springs.stiffness, springs.damping);
+        limit.step = own.step;
+        comm_min(sim->comm, &limit.step, 1);
+        const bool is_least = own.element >= 0 && own.step == limit.step;
+        double first = is_least ? own.element : (double)INFINITY;
+        comm_min(sim->comm, &first, 1);
+        if (is_least && own.element == first) {
+            limit.element = own.element;
+            limit.node = own.node;
         }
     }
+    node_springs_clear(&springs);
+    return limit;
+}
+
+struct deform_limit deform_critical_step(const struct simulation *sim, bool touched)
+{
+    struct deform_limit least = {(double)INFINITY, -1, -1, -1};
+    for (int k = 0; k < sim->deform.n; k++) {
+        const struct deform_limit limit = find_limit(sim, k, touched);
+        if (limit.step < least.step)
+            least = limit;
+    }
     return least;
+}
+
+int deform_name_limit(const struct simulation *sim, const struct deform_limit *limit,
+                      char *text, int size)
+{
+    int k = 0;
+    if (limit->element < 0)
+        return 0;
+    while (sim->deform.list[k].body != limit->body)
+        k++;
+    const struct solid *solid = &sim->deform.list[k].solid;
+    const bool is_node = limit->node >= 0;
+    const int node = is_node ? limit->node : solid->corners[limit->element][0];
+    const double *at = solid_place(solid, node);
+    return snprintf(text, (size_t)size, "%s %d of body '%.40s' at (%.5g, %.5g, %.5g) m",
+                    is_node ? "node" : "element", (is_node ? node : limit->element) + 1,
+                    sim->bodies.list[limit->body].name, at[0], at[1], at[2]);
 }

@@ -70,8 +70,18 @@ struct deform_sizes deform_sizes(const struct deform *deform);
 /* Totals over all solids and ranks, between deform_plan() and deform_move(); notes whether some
  * solid has too much in hourglass modes.  Collective. */
 void deform_energies(struct simulation *sim, struct solid_energies *energies);
-/* The critical step of the elements as they are, with the contacts that touch now; *body is
- * whose.  Infinite without any.  Collective. */
-double deform_critical_step(const struct simulation *sim, int *body);
+/* What the elements as they are allow of the step, with the contacts that touch now. */
+struct deform_limit {
+    double step; /* infinite without any [s] */
+    int body;    /* whose; -1: none */
+    int element,
+        node; /* that allows no more, and its corner with contacts, if one is the cause;
+                          -1: on another rank, or none */
+};
+/* Of those elements alone that have contacts, if `touched`.  Collective. */
+struct deform_limit deform_critical_step(const struct simulation *sim, bool touched);
+/* "node 12 of body 'bar' at (0, 0, 0) m"; nothing on ranks that do not have it. */
+int deform_name_limit(const struct simulation *sim, const struct deform_limit *limit,
+                      char *text, int size);
 
 #endif

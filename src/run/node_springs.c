@@ -141,7 +141,7 @@ void node_springs_find(struct node_springs *springs, const struct simulation *si
     if (all.n > 1)
         qsort(all.list, (size_t)all.n, sizeof *all.list, compare_entries);
     *springs = (struct node_springs){array_allocate(n, sizeof *springs->stiffness),
-                                     array_allocate(n, sizeof *springs->damping)};
+                                     array_allocate(n, sizeof *springs->damping), all.n > 0};
     for (int k = 0, end; k < all.n; k = end) {
         struct exact_sum sums[2] = {{{0}, 0, 0}};
         for (end = k; end < all.n && all.list[end].node == all.list[k].node; end++) {

@@ -5,12 +5,15 @@
 #ifndef TREMIE_RUN_NODE_SPRINGS_H
 #define TREMIE_RUN_NODE_SPRINGS_H
 
+#include <stdbool.h>
+
 struct simulation;
 
 /* Of each node, sums over the contacts that touch now. */
 struct node_springs {
     double *stiffness; /* [N/m] */
     double *damping;   /* [kg/s] */
+    bool any;          /* contact touches, on any rank */
 };
 
 /* Of all nodes of a body among those that deform.  Collective. */

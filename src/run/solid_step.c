@@ -10,9 +10,12 @@
 #include <stdlib.h>
 
 #include "base/array.h"
+#include "base/elementary.h"
+#include "base/vec3.h"
 #include "job/job.h"
 #include "model/body.h"
 #include "model/material.h"
+#include "model/rigid.h"
 #include "model/skin.h"
 #include "model/solid_ball.h"
 #include "model/solid_mesh.h"
@@ -20,6 +23,10 @@
 #include "physics/shell_element.h"
 #include "run/limits.h"
 #include "solid/solid_plan.h"
+
+/* Share of the critical step that the automatic step takes: elements that are pressed together
+ * allow less. */
+static const double ELEMENTS_SHARE = 0.7;
 
 /* A solid, and of each of its nodes what contacts do to it. */
 struct ground {
@@ -217,6 +224,12 @@ static bool meets(const struct job *job, int from, int to)
     return from != to || body->solid.touches.what == JOB_TOUCHES_ITSELF;
 }
 
+static void harder(struct felt *most, struct felt felt)
+{
+    most->stiffness = felt.stiffness > most->stiffness ? felt.stiffness : most->stiffness;
+    most->damping = felt.damping > most->damping ? felt.damping : most->damping;
+}
+
 /* What one ball of body `from` does, of this width, in the stiffest contact with body `to`. */
 static void harden(const struct ground *ground, int from, int to, double width, double mass,
                    struct felt *most)
@@ -225,8 +238,7 @@ static void harden(const struct ground *ground, int from, int to, double width, 
     const struct material_pair pair =
         spring_between(job, job->bodies[from].material, job->bodies[to].material);
     const struct felt felt = felt_of(&pair, width, mass);
-    most->stiffness = felt.stiffness > most->stiffness ? felt.stiffness : most->stiffness;
-    most->damping = felt.damping > most->damping ? felt.damping : most->damping;
+    harder(most, felt);
 }
 
 /* The body's own balls, each pressed against the stiffest other body. */
@@ -250,6 +262,80 @@ static void add_own_balls(const struct ground *ground, const struct surface *sur
         for (int k = 0; k < ball->n_inner; k++)
             push(ground, ball->inner[k], far, most);
     }
+}
+
+/* How easily a body yields to forces on its surface, in the mean over its facets' corners and
+ * sides' middles [1/kg]. */
+static double yield_of(const struct body *body)
+{
+    const struct mesh *mesh = &body->mesh;
+    double sum = 0.0;
+    int n = 0;
+    for (int k = 0; k < mesh_n_shown(mesh); k++) {
+        const int *at, n_at = mesh_shown(mesh, k, &at);
+        for (int c = 0; c < n_at; c++, n++) {
+            const struct vec3 a = mesh->reference[at[c]],
+                              b = mesh->reference[at[(c + 1) % n_at]];
+            sum += rigid_yield_most(body->rigid, vec3_scale(0.5, vec3_add(a, b)));
+        }
+    }
+    return sum / n;
+}
+
+/* From the ball's inner nodes to the outer one, of length 1. */
+static struct vec3 outwards(const struct ground *ground, const struct solid_ball *ball)
+{
+    struct vec3 way = vec3_scale(ball->n_inner, ground->mesh->nodes[ball->outer]);
+    for (int k = 0; k < ball->n_inner; k++)
+        way = vec3_sub(way, ground->mesh->nodes[ball->inner[k]]);
+    return vec3_scale(1.0 / vec3_norm(way), way);
+}
+
+/* Springs and dashpots of the balls that face one way, as many as find room on half of a body's
+ * surface. */
+static struct felt felt_from(const struct ground *ground, const struct surface *surface, int b,
+                             int to, struct vec3 direction, double room)
+{
+    static const double FACING = 0.5; /* within 60 degrees: corners of boxes as well */
+    struct felt sum = {0.0, 0.0};
+    double area = 0.0;
+    for (int v = 0; v < surface->n; v++) {
+        const struct solid_ball *ball = &surface->balls[v];
+        struct felt felt = {0.0, 0.0};
+        if (ball->n_inner == 0 || vec3_dot(outwards(ground, ball), direction) < FACING)
+            continue;
+        harden(ground, b, to, ground->body->solid.touches.stiffness * ball->area / ball->depth,
+               ground->mass[ball->outer], &felt);
+        sum.stiffness += felt.stiffness;
+        sum.damping += felt.damping;
+        area += ball->area;
+    }
+    const double share = area > room ? room / area : 1.0;
+    return (struct felt){share * sum.stiffness, share * sum.damping};
+}
+
+/* A body that forces move yields to all balls on it together: each has this much beside its own
+ * spring, for every kg of its node. (10.8) */
+static void add_yielding(const struct ground *ground, const struct surface *surface,
+                         const struct bodies *bodies, int b)
+{
+    struct felt most = {0.0, 0.0};
+    for (int to = 0; to < bodies->n; to++) {
+        const struct body *body = &bodies->list[to];
+        if (body->rigid == NULL || !meets(ground->job, b, to))
+            continue;
+        const double yield = yield_of(body), room = 0.5 * mesh_survey(&body->mesh).area;
+        for (int d = 0; d < 6; d++) {
+            double way[3] = {0.0, 0.0, 0.0};
+            way[d / 2] = d % 2 == 0 ? 1.0 : -1.0;
+            const struct felt felt =
+                felt_from(ground, surface, b, to, (struct vec3){way[0], way[1], way[2]}, room);
+            harder(&most, (struct felt){yield * felt.stiffness, yield * felt.damping});
+        }
+    }
+    for (int v = 0; v < surface->n && most.stiffness > 0.0; v++)
+        if (surface->balls[v].n_inner > 0)
+            push(ground, surface->nodes[v], ground->mass[surface->nodes[v]], most);
 }
 
 /* Others' balls on the body's faces: as many of mean size as find room on what a node stands
@@ -328,11 +414,13 @@ struct solid_step solid_step_with_contacts(const struct job *job, const struct b
     ground.damping = array_allocate((size_t)ground.mesh->n_nodes, sizeof *ground.damping);
     add_own_balls(&ground, &surface, b);
     add_others_balls(&ground, &surface, bodies, b);
-    add_spheres(&ground, &surface, materials, spheres);
+    add_yielding(&ground, &surface, bodies, b);
+    if (spheres != NULL)
+        add_spheres(&ground, &surface, materials, spheres);
     struct solid_step least = find_least(&ground);
     for (int k = 0; k < job->n_bodies; k++)
         of_bodies = of_bodies || meets(job, b, k) || meets(job, k, b);
-    for (int m = 0; m < spheres->n_materials; m++)
+    for (int m = 0; spheres != NULL && m < spheres->n_materials; m++)
         of_spheres = of_spheres || spheres->sizes[m].most > 0.0;
     least.of_bodies = of_bodies;
     least.of_spheres = of_spheres;
@@ -341,15 +429,46 @@ struct solid_step solid_step_with_contacts(const struct job *job, const struct b
     return least;
 }
 
-double solid_step_least(const struct job *job, const struct bodies *bodies,
-                        const struct materials *materials, const struct limits_spheres *spheres)
+double solid_step_flow(const struct job *job, const struct job_body *body)
+{
+    const struct job_material *material = &job->materials[body->material];
+    const double yield =
+        material->n_hardening_table > 0 ? material->hardening_table[0].stress : material->yield;
+    const struct vec3 v = body->solid.velocity;
+    return yield > 0.0 ? 0.5 * material->density * vec3_dot(v, v) / yield : 0.0;
+}
+
+/* What elements that become flat as their body stops will bear of what they bear at first. */
+static double flow_share(double flow)
+{
+    static const double FLATTER = 2.5, LEAST = 0.05;
+    const double share = elementary_exp(-FLATTER * flow);
+    return share > LEAST ? share : LEAST;
+}
+
+static double find_safe(const struct job *job, const struct bodies *bodies,
+                        const struct materials *materials, const struct limits_spheres *spheres,
+                        bool flows)
 {
     double least = (double)INFINITY;
     for (int b = 0; b < job->n_bodies; b++) {
         if (!job_deforms(&job->bodies[b]))
             continue;
         const double step = solid_step_with_contacts(job, bodies, materials, spheres, b).step;
-        least = step < least ? step : least;
+        const double share = flows ? flow_share(solid_step_flow(job, &job->bodies[b])) : 1.0;
+        least = share * step < least ? share * step : least;
     }
-    return least;
+    return ELEMENTS_SHARE * least;
+}
+
+double solid_step_safe(const struct job *job, const struct bodies *bodies,
+                       const struct materials *materials, const struct limits_spheres *spheres)
+{
+    return find_safe(job, bodies, materials, spheres, false);
+}
+
+double solid_step_auto(const struct job *job, const struct bodies *bodies,
+                       const struct materials *materials, const struct limits_spheres *spheres)
+{
+    return find_safe(job, bodies, materials, spheres, true);
 }

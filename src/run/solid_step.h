@@ -4,9 +4,10 @@
  * their nodes.
  *
  * Contacts are not there yet.  On each node of the surface are taken: what its own ball and
- * those of other solids can do, where `touches` lets them; of spheres one that strikes as fast
- * as can be foreseen, and as many as find room on what the node stands for, each pressed by
- * what may rest on it.  What does happen is watched in the run (run/watch.h).
+ * those of other solids can do, where `touches` lets them, while rigid bodies that forces move
+ * yield to as many of them as may meet it at once; of spheres one that strikes as fast as can
+ * be foreseen, and as many as find room on what the node stands for, each pressed by what may
+ * rest on it.  What does happen is watched in the run (run/watch.h).
  */
 #ifndef TREMIE_RUN_SOLID_STEP_H
 #define TREMIE_RUN_SOLID_STEP_H
@@ -15,6 +16,7 @@
 
 struct bodies;
 struct job;
+struct job_body;
 struct limits_spheres;
 struct materials;
 
@@ -27,13 +29,20 @@ struct solid_step {
 
 /* Of the elements of body b, which is a solid, without contacts.  Local. */
 struct solid_step solid_step_alone(const struct job *job, int b);
-/* With those that may be expected.  Local. */
+/* With those that may be expected; `spheres` NULL: of bodies alone.  Local. */
 struct solid_step solid_step_with_contacts(const struct job *job, const struct bodies *bodies,
                                            const struct materials *materials,
                                            const struct limits_spheres *spheres, int b);
-/* The least of these, of all solids; infinite without any [s].  Local. */
-double solid_step_least(const struct job *job, const struct bodies *bodies,
-                        const struct materials *materials,
-                        const struct limits_spheres *spheres);
+/* What is safe of the least of these, of all solids, as long as none flows much; infinite
+ * without any [s].  Local. */
+double solid_step_safe(const struct job *job, const struct bodies *bodies,
+                       const struct materials *materials, const struct limits_spheres *spheres);
+/* What `step: auto` takes: less where a solid will flow.  (12.21)  Local. */
+double solid_step_auto(const struct job *job, const struct bodies *bodies,
+                       const struct materials *materials, const struct limits_spheres *spheres);
+
+/* By how much a solid would flow in the mean if all its motion at the start went into that; 0
+ * where it never yields [-].  Local. */
+double solid_step_flow(const struct job *job, const struct job_body *body);
 
 #endif

@@ -16,6 +16,7 @@
 #include "model/solid_mesh.h"
 #include "model/solid_quality.h"
 #include "model/solid_shape.h"
+#include "physics/critical_step.h"
 #include "run/solid_step.h"
 
 enum { PATH = 96, TEXT = 160 };
@@ -274,16 +275,12 @@ static void print_sets(const struct solid_mesh *mesh)
 static void print_flow(const struct job *job, const struct job_body *body)
 {
     static const double MUCH = 0.05; /* strain */
-    const struct job_material *material = &job->materials[body->material];
-    const double yield =
-        material->n_hardening_table > 0 ? material->hardening_table[0].stress : material->yield;
-    const double v2 = vec3_dot(body->solid.velocity, body->solid.velocity);
-    const double strain = 0.5 * material->density * v2 / yield; /* of all its energy [-] */
-    if (yield > 0.0 && strain > MUCH)
-        report_say(
-            "          brought to rest it would flow by about %.3g in the mean, and by more "
-            "where it strikes: elements become narrower and allow less",
-            strain);
+    const double flow = solid_step_flow(job, body);
+    if (flow > MUCH)
+        report_say("          brought to rest it would flow by about %.3g in the mean, and by "
+                   "more where it strikes: elements become narrower and allow less, which auto "
+                   "foresees",
+                   flow);
 }
 
 /* What elements allow of the step by themselves, and with the contacts that may be expected. */
@@ -300,13 +297,18 @@ static void print_step(const struct job *job, const struct solid_mesh *mesh, int
                "without contacts, the step is %.3g of it",
                wave_speed(&job->materials[body->material]),
                element_name(mesh, alone.element, name), alone.step, step / alone.step);
-    if (!met.of_spheres && !met.of_bodies)
+    if (met.node < 0)
         return;
     report_say("          with contacts of %s%s%s, most on node %lld of %s: about %.3g s, the "
                "step is %.3g of it",
                met.of_spheres ? "spheres" : "", met.of_spheres && met.of_bodies ? " and " : "",
                met.of_bodies ? "bodies" : "", solid_quality_node_number(mesh, met.node),
                element_name(mesh, met.element, name), met.step, step / met.step);
+    if (met.of_spheres && step <= alone.step && step > job->watch.step * met.step)
+        report_warn(
+            "body '%s': time.step is about %.3g of what its nodes allow as spheres strike "
+            "them and rest on them; the run stops if it is too much",
+            body->name, step / met.step);
 }
 
 /* "64 hexahedra, 12 quads" */
@@ -444,7 +446,30 @@ static void warn_of_flow(const struct job *job, const struct job_body *body)
                     body->name, material->name);
 }
 
-void solid_survey_warn(const struct job *job, int b)
+/* The step against what elements allow by themselves, or as their nodes touch. */
+static void warn_of_step(const struct job *job, const struct bodies *bodies,
+                         const struct solid_mesh *mesh, int b)
+{
+    const struct job_body *body = &job->bodies[b];
+    const struct solid_step alone = solid_step_alone(job, b);
+    const struct solid_step met = solid_step_with_contacts(job, bodies, NULL, NULL, b);
+    const double step = job->time.step;
+    char name[TEXT];
+    if (step > alone.step)
+        report_warn("body '%s': time.step is %.3g of the critical step of %s; it would be "
+                    "unstable",
+                    body->name, step / alone.step, element_name(mesh, alone.element, name));
+    else if (met.node >= 0 && step > job->watch.step * met.step)
+        report_warn(
+            "body '%s': time.step is about %.3g of what node %lld of %s allows as it "
+            "touches bodies; the run stops there if it is too much. auto, or %.2g s, is "
+            "safe",
+            body->name, step / met.step, solid_quality_node_number(mesh, met.node),
+            element_name(mesh, met.element, name),
+            critical_step_round_down(solid_step_safe(job, bodies, NULL, NULL)));
+}
+
+void solid_survey_warn(const struct job *job, const struct bodies *bodies, int b)
 {
     static const double JACOBIAN = 0.1, ASPECT = 20.0;
     const struct job_body *body = &job->bodies[b];
@@ -452,15 +477,10 @@ void solid_survey_warn(const struct job *job, int b)
     char name[TEXT];
     const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
     const struct solid_quality q = solid_quality_of(mesh);
-    const struct solid_step alone = solid_step_alone(job, b);
     warn_of_material(job, body);
     warn_of_layers(body);
     warn_of_flow(job, body);
-    if (job->time.step > alone.step)
-        report_warn("body '%s': time.step is %.3g of the critical step of %s; it would be "
-                    "unstable",
-                    body->name, job->time.step / alone.step,
-                    element_name(mesh, alone.element, name));
+    warn_of_step(job, bodies, mesh, b);
     if (q.jacobian_least < JACOBIAN)
         report_warn(
             "body '%s': %s is nearly folded or flat, its scaled Jacobian is %.2g; above "

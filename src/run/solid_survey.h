@@ -27,6 +27,6 @@ struct solid_survey_cost {
 struct solid_survey_cost solid_survey_cost(const struct job *job);
 /* Warns of what is allowed and probably not meant: of its elements, its material, the step.
  * Local. */
-void solid_survey_warn(const struct job *job, int b);
+void solid_survey_warn(const struct job *job, const struct bodies *bodies, int b);
 
 #endif

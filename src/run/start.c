@@ -164,6 +164,30 @@ static void check_body(const struct scene *scene, int group, int b, const struct
     free(what);
 }
 
+/* Spheres in a body of elements, clear of its surface: nothing would tell them out of it. */
+static void check_inside(const struct scene *scene, int group, const struct body *body,
+                         const struct region_surface *surface, struct mistakes *mistakes)
+{
+    const double limit = scene->job->watch.overlap;
+    const struct packing *packing = packing_of(scene, group);
+    int64_t n = 0, first = -1;
+    for (int64_t k = 0; k < packing->n; k++) {
+        const struct packing_sphere sphere = packing_get(packing, k);
+        const struct vec3 x = periodic_settled(&scene->periodic, sphere.position);
+        if (region_surface_holds(surface, x) &&
+            !region_surface_is_near(surface, x, sphere.radius * (1.0 - limit)))
+            first = n++ == 0 ? k : first;
+    }
+    if (n == 0)
+        return;
+    char *what =
+        array_format("is inside body '%s', which is solid, the first of %lld that are; "
+                     "places outside are expected",
+                     body->name, (long long)n);
+    complain(scene, (struct owner){group, first}, mistakes, what);
+    free(what);
+}
+
 static void check_bodies(const struct scene *scene, const struct bodies *bodies,
                          struct mistakes *mistakes)
 {
@@ -175,6 +199,9 @@ static void check_bodies(const struct scene *scene, const struct bodies *bodies,
             region_surface_build(&body->mesh, body->mesh.reference);
         for (int g = 0; g < scene->packings->n; g++)
             check_body(scene, g, b, body, surface, mistakes);
+        const bool is_solid = scene->job->bodies[b].model == JOB_MODEL_SOLID;
+        for (int g = 0; is_solid && g < scene->packings->n; g++)
+            check_inside(scene, g, body, surface, mistakes);
         region_surface_destroy(surface);
     }
 }

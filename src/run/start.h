@@ -1,6 +1,7 @@
 /*
  * What spheres are like at the start, as a job places them: which overlap others or bodies more
- * than the watch bears, which are outside the domain.  A run of them would stop at once.
+ * than the watch bears, which are outside the domain, or inside a body of elements.  A run of
+ * them would stop at once, or not feel them.
  */
 #ifndef TREMIE_RUN_START_H
 #define TREMIE_RUN_START_H

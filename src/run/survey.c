@@ -228,7 +228,7 @@ void survey_warn(const struct job *job, const struct bodies *bodies,
     for (int b = 0; b < bodies->n && comm->rank == 0; b++) {
         const struct mesh *mesh = &bodies->list[b].mesh;
         if (job_deforms(&job->bodies[b]))
-            solid_survey_warn(job, b);
+            solid_survey_warn(job, bodies, b);
         if (!is_drawn(&job->bodies[b]))
             continue;
         const struct mesh_survey survey = mesh_survey(mesh);

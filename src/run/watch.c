@@ -16,6 +16,7 @@
 #include "physics/critical_step.h"
 #include "run/control.h"
 #include "run/simulation.h"
+#include "run/solid_step.h"
 
 /* Share of the overlap at rest by which a place may be rounded. */
 static const double ROUNDING_BORNE = 0.01;
@@ -298,12 +299,31 @@ static double find_rounding(const struct simulation *sim)
     return most;
 }
 
+/* The step against what bodies that deform allow; of those that touch alone, if `touched`. */
+static void watch_solids(struct watch *watch, const struct simulation *sim, bool touched)
+{
+    const struct deform_limit limit = deform_critical_step(sim, touched);
+    if (sim->dt <= sim->job->watch.step * limit.step)
+        return;
+    fail(watch, WATCH_SOLID_STEP);
+    const int n = deform_name_limit(sim, &limit, watch->what, (int)sizeof watch->what);
+    if (n > 0)
+        snprintf(watch->what + n, sizeof watch->what - (size_t)n,
+                 ": time.step = %.4g s is %.3g of the critical step there%s, %.4g s; set "
+                 "time.step to %.2g s or less, or to auto",
+                 sim->dt, sim->dt / limit.step, limit.node >= 0 ? " with its contacts" : "",
+                 limit.step, critical_step_round_down(STEP_ADVISED * limit.step));
+}
+
 void watch_contacts(struct watch *watch, const struct simulation *sim)
 {
-    if (sim->step % WATCH_CONTACTS_EVERY != 0)
+    const bool looks = sim->step % WATCH_CONTACTS_EVERY == 0;
+    if (!looks && !watch->doubts_nodes)
         return;
     load_bodies(sim);
-    watch_elements(watch, sim);
+    watch_solids(watch, sim, !looks);
+    if (!looks)
+        return;
     watch->rate = 1.0 / find_critical(sim, sim->dt / sim->job->watch.step);
     watch->rounding = find_rounding(sim);
 }
@@ -353,16 +373,10 @@ void watch_bodies(struct watch *watch, const struct simulation *sim)
 
 void watch_elements(struct watch *watch, const struct simulation *sim)
 {
-    int body = -1;
-    const double critical = deform_critical_step(sim, &body);
-    if (sim->dt <= sim->job->watch.step * critical)
+    if (sim->deform.n == 0)
         return;
-    fail(watch, WATCH_ELEMENT);
-    snprintf(
-        watch->what, sizeof watch->what,
-        "time.step = %.4g s is %.3g of the critical step of body '%.60s' with its contacts, "
-        "%.4g s",
-        sim->dt, sim->dt / critical, sim->bodies.list[body].name, critical);
+    watch->doubts_nodes = sim->dt > solid_step_safe(sim->job, &sim->bodies, NULL, NULL);
+    watch_solids(watch, sim, false);
 }
 
 void watch_forced(struct watch *watch, const struct simulation *sim)
@@ -759,6 +773,11 @@ static void explain_others(enum watch_failure failure, const struct simulation *
             "more regular, or time.step smaller",
             when, what);
         break;
+    case WATCH_SOLID_STEP:
+        report_error("step too large at %s: %s, and start with --fresh; softer contacts and "
+                     "coarser elements allow more",
+                     when, what);
+        break;
     case WATCH_HOURGLASS:
         report_error(
             "hourglass modes at %s: %s, more than watch.hourglass = %.3g; make the mesh finer "
@@ -795,7 +814,8 @@ void watch_explain(const struct watch *watch, const struct simulation *sim)
     const bool starts_deep = too_deep && sim->step <= 1;
     const bool by_contacts = watch->failure != WATCH_FAR && watch->failure != WATCH_LEAVER &&
                              watch->failure != WATCH_FULL && watch->failure != WATCH_ELEMENT &&
-                             watch->failure != WATCH_HOURGLASS;
+                             watch->failure != WATCH_HOURGLASS &&
+                             watch->failure != WATCH_SOLID_STEP;
     /* Whatever rang: beyond the critical step the step is to blame. */
     if (appeared != NULL && deepest.overlap > 0.0 && watch->failure != WATCH_LEAVER)
         report_error("body '%s' appeared where spheres are, at %s: %s overlap by %.3g of a "

@@ -26,14 +26,15 @@ enum watch_failure {
     WATCH_NOT_A_NUMBER, /* a place or velocity is NaN or infinite */
     WATCH_STEP,         /* the step exceeds what the present contacts allow */
     WATCH_OVERLAP,      /* a contact overlaps too much */
-    WATCH_MOTION,    /* a sphere or body moves too far in one step: contacts would be missed */
-    WATCH_FAR,       /* so far from the origin that rounding of places spoils contacts */
-    WATCH_LEAVER,    /* a sphere left the domain */
-    WATCH_FULL,      /* an insertion finds no room, and is to stop then */
-    WATCH_ENERGY,    /* the energy balance does not close */
-    WATCH_SUMS,      /* a total is beyond what exact sums hold */
-    WATCH_ELEMENT,   /* an element of a body that deforms has failed, or allows no such step */
-    WATCH_HOURGLASS, /* a body that deforms does so in ways that its elements do not feel */
+    WATCH_MOTION,     /* a sphere or body moves too far in one step: contacts would be missed */
+    WATCH_FAR,        /* so far from the origin that rounding of places spoils contacts */
+    WATCH_LEAVER,     /* a sphere left the domain */
+    WATCH_FULL,       /* an insertion finds no room, and is to stop then */
+    WATCH_ENERGY,     /* the energy balance does not close */
+    WATCH_SUMS,       /* a total is beyond what exact sums hold */
+    WATCH_ELEMENT,    /* an element of a body that deforms, or a contact of its, has failed */
+    WATCH_SOLID_STEP, /* the step exceeds what such elements allow with their contacts */
+    WATCH_HOURGLASS,  /* a body that deforms does so in ways that its elements do not feel */
 };
 
 /* Why a run stops before its end, with a checkpoint. */
@@ -66,10 +67,14 @@ struct watch {
     double rate;     /* 1 / critical step of the present contacts, if it fails the run [1/s] */
     double rounding; /* of places, over what contacts can bear [-] */
     double radius_least; /* of all spheres at the start [m] */
+    /* The step is beyond what is safe as bodies that deform touch: they are looked at each step
+     * at which they do, for a light node soon leaves a stiff contact, with energy that it has
+     * not brought. */
+    bool doubts_nodes;
     /* What all contacts of each body that forces move do to it, when last looked at. */
     struct critical_step_sums *loads;
     /* this rank's part of the diagnosis */
-    char what[256];
+    char what[320];
 };
 
 void watch_init(struct watch *watch, const struct job *job);
@@ -89,7 +94,7 @@ void watch_elements(struct watch *watch, const struct simulation *sim);
 void watch_forced(struct watch *watch, const struct simulation *sim);
 
 /* Looks at contacts and places, where the step is one that is looked at: forces are known,
- * nothing has moved.  Local; collective where forces move bodies. */
+ * nothing has moved.  Local; collective where forces move bodies or bodies deform. */
 void watch_contacts(struct watch *watch, const struct simulation *sim);
 
 /* The step's one reduction: spent[] becomes the largest on any rank.  Collective. */

@@ -42,24 +42,39 @@ static struct solid_element_load load_of(const struct solid *solid, int element,
                               solid->layers, material);
 }
 
-struct solid_limits solid_limits_find(const struct solid *solid, const double *stiffness,
-                                      const double *damping)
+static struct solid_limits find(const struct solid *solid, const double *stiffness,
+                                const double *damping, bool touched)
 {
     struct solid_limits limits = {(double)INFINITY, -1, -1};
     for (int e = 0; e < solid->n_elements; e++) {
         if (solid->slot[e] < 0)
             continue;
         double x[SOLID_ELEMENT_CORNERS][3];
+        const double spring = largest_share(solid, e, stiffness);
+        if (touched && !(spring > 0.0))
+            continue;
         solid_corner_places(solid, e, x);
         const struct solid_element_load load = load_of(solid, e, x);
-        const double step = solid_element_critical_step(
-            &load, largest_share(solid, e, stiffness), largest_share(solid, e, damping));
+        const double step =
+            solid_element_critical_step(&load, spring, largest_share(solid, e, damping));
         if (step < limits.step)
             limits = (struct solid_limits){step, e, -1};
     }
     if (stiffness != NULL && limits.element >= 0)
         limits.node = stiffest_corner(solid, limits.element, stiffness);
     return limits;
+}
+
+struct solid_limits solid_limits_find(const struct solid *solid, const double *stiffness,
+                                      const double *damping)
+{
+    return find(solid, stiffness, damping, false);
+}
+
+struct solid_limits solid_limits_touched(const struct solid *solid, const double *stiffness,
+                                         const double *damping)
+{
+    return find(solid, stiffness, damping, true);
 }
 
 /* ------------------------------------------------------------------------------- failures */

@@ -21,6 +21,9 @@ struct solid_limits {
  * stiffness [N/m] and damping [kg/s]; NULL: none.  (12.11) to (12.13) */
 struct solid_limits solid_limits_find(const struct solid *solid, const double *stiffness,
                                       const double *damping);
+/* The same of those elements alone that have contacts. */
+struct solid_limits solid_limits_touched(const struct solid *solid, const double *stiffness,
+                                         const double *damping);
 
 enum solid_limits_failure {
     SOLID_LIMITS_FINE,

@@ -1,7 +1,7 @@
 #!/bin/bash
 # timeout: 600
-# Every way in which a run of spheres and rigid bodies can fail is provoked, is called by its name
-# within a stated number of steps, ends with status 3, keeps the last good checkpoint and says what
+# Every way in which a run of spheres and rigid bodies can fail, and a light node in a stiff
+# contact, is provoked, is called by its name within a stated number of steps, ends with status 3, keeps the last good checkpoint and says what
 # to do; next to each the nearest case that is fine runs without a false alarm.  With --table the
 # rows of README.md.
 set -uo pipefail
@@ -143,6 +143,25 @@ alike heavy_bed
 job light_bed "$advised" 4000 -50 "$pile" "$box"
 fine light_bed "the step as advised"
 
+# ------------------------------------------------------------------ a light node in a stiff contact
+# A rod of ten cells, h/c = 5 us, on the springs of its end's nodes: gamma = 3 touches.stiffness of E A / h, two thirds of it
+# on the last nodes.  Thrown at the floor it touches for some steps only; pressed on it by its weight it stays.
+# rod NAME SPEED LOW GRAVITY STIFFNESS [EDIT]: LOW in mm.
+rod()
+{
+    job "$1" 4.0e-6 300 "$4" "" "  - $floor
+  - {name: rod, material: ore, model: solid, mesh: {kind: box, min: [0, 0, $3 mm], max: [1 mm, 1 mm, $(awk -v low="$3" 'BEGIN { print low + 10 }') mm], cells: [1, 1, 10]}, velocity: [0, 0, $2], touches: {what: bodies, stiffness: $5}}" \
+        '/^spheres:/,/^bodies:/{/^bodies:/!d}; s/poisson: 0.2/poisson: 0/; s/friction: 0.5, restitution: 0.8/friction: 0, restitution: 1/'"${6:-}"
+}
+rod thrown_rod -1 0.3 0 2 "; s/steps: 64/steps: 16/"
+fails thrown_rod "(12.13) as nodes touch" "step too large at step" 76 1 "set time.step to"
+alike thrown_rod
+rod thrown_softer -1 0.3 0 0.5
+fine thrown_softer "a spring of a quarter: .89 of the bound instead of 1.4"
+rod pressed_rod 0 -0.001 -6000 2
+fails pressed_rod "(12.13) as nodes touch" "step too large at step" 0 1 "set time.step to"
+rod pressed_softer 0 -0.001 -6000 0.5
+fine pressed_softer "likewise"
 # ------------------------------------------------------------------ too few steps for an impact
 ball=$(sphere ball 0.01 0 0 0.0131 0 0 -3)
 job few_steps 3.0e-4 20000 -9.81 "$ball" "  - $floor" \
@@ -165,6 +184,15 @@ job in_the_floor 1.0e-5 200 0 "$(sphere a 0.01 0 0 0.0089 0 0 0)" "  - $floor"
 refused in_the_floor "overlaps body 'floor'"
 job on_the_floor 1.0e-5 200 0 "$(sphere a 0.01 0 0 0.0091 0 0 0)" "  - $floor"
 fine on_the_floor "9 % instead of 11 % of a radius"
+block='  - {name: block, material: ore, model: solid, mesh: {kind: %s, cells: [4, 8, 4]}}'
+# shellcheck disable=SC2059
+job in_the_block 1.0e-6 200 0 "$(sphere a 0.01 0 0 0 0 0 0; sphere b 0.01 0 0 0.06 0 0 0)" \
+    "$(printf "$block" "cylinder, from: [0, 0, -0.04], to: [0, 0, 0.04], radius: 0.03")"
+refused in_the_block "is inside body 'block'"
+# shellcheck disable=SC2059
+job in_the_tube 1.0e-6 200 0 "$(sphere a 0.01 0 0 0 0 0 0)" \
+    "$(printf "$block" "tube, from: [0, 0, -0.04], to: [0, 0, 0.04], inner: 0.02, outer: 0.03")"
+fine in_the_tube "in a tube instead of a cylinder"
 # What a state brings along is not judged before the run.
 job deep_before 1.0e-5 1 0 "$(sphere a 0.01 0 0 0 0 0 0; sphere b 0.01 0.01895 0 0 0 0 0)" "" '$a watch: {overlap: 0.3}'
 alone run deep_before.yaml --out deep_before || why+=" the run before ends with status $?;"

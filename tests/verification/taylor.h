@@ -13,7 +13,7 @@ struct taylor_result {
 /* L 32.4 mm, R 3.2 mm, 227 m/s, to 80 us; a quarter of it, `across` cells along a radius twice
  * over and `along` its length. */
 struct taylor_result taylor_run(int across, int along);
-/* Rows that both cases of it have. */
-void taylor_rows(int across, int along);
+/* Rows that both cases of it have, of such a run. */
+void taylor_rows(const struct taylor_result *result, int across, int along);
 
 #endif
