@@ -53,6 +53,12 @@ static void add_columns(struct series *table)
         series_add_column(table, "1", "number a rank, mean", "%s.mean", sizes[k]);
         series_add_column(table, "1", "number a rank, largest", "%s.max", sizes[k]);
     }
+    series_add_column(table, "ns", "cost of a step as boxes are cut, of a rank, least",
+                      "weight.min");
+    series_add_column(table, "ns", "cost of a step as boxes are cut, of a rank, mean",
+                      "weight.mean");
+    series_add_column(table, "ns", "cost of a step as boxes are cut, of a rank, largest",
+                      "weight.max");
     series_add_column(table, "bytes", "resident memory a rank, least", "memory.min");
     series_add_column(table, "bytes", "resident memory a rank, mean", "memory.mean");
     series_add_column(table, "bytes", "resident memory a rank, largest", "memory.max");
@@ -162,6 +168,7 @@ void runtime_row(struct runtime *runtime, const struct comm *comm, int64_t step,
                                sizes->n_nodes,       sizes->n_copies,     sizes->n_elements};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         spread(comm, row, &n, numbers[k], 1.0);
+    spread(comm, row, &n, sizes->weight, 1.0);
     spread(comm, row, &n, (int64_t)runtime_memory(), 1.0);
     CHECK(n == runtime->table.n_columns, "%d values for %d columns", n,
           runtime->table.n_columns);

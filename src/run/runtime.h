@@ -34,6 +34,7 @@ struct runtime_sizes {
     int64_t n_spheres; /* in the run */
     int64_t n_nodes, n_copies,
         n_elements; /* of bodies that deform: moved, not moved, computed */
+    int64_t weight; /* see redistribute_weight() [ns] */
 };
 
 struct runtime {

@@ -433,6 +433,7 @@ struct runtime_sizes simulation_sizes(const struct simulation *sim)
         .n_nodes = solids.n_nodes,
         .n_copies = solids.n_copies,
         .n_elements = solids.n_elements,
+        .weight = redistribute_weight(sim),
     };
 }
 
