@@ -171,6 +171,14 @@ try 0 "$bin/tremie-info" one --csv series.csv
 head -n 1 series.csv | grep -q '^step,time_s,n_spheres,.*,speed_max_m_s,.*bin.torque_x_N_m' || why+=" headings of the series;"
 [ "$(tail -n 1 series.csv | cut -d , -f 1-3)" = "$(sed -n 's/^  \(step\|time\|n_spheres\)  *\([^ ]*\).*/\2/p' said | paste -sd ,)" ] ||
     why+=" the series ends otherwise than it says;"
+try 0 "$bin/tremie-info" two --csv runtime.csv --table runtime
+ratios=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+    { sum += ratio = $at["weight.max_ns"] / $at["weight.mean_ns"]; most = ratio > most ? ratio : most }
+    END { printf "%.6g (mean), %.6g (most)", sum / (NR - 1), most }' runtime.csv)
+try 0 "$bin/tremie-runstats" two
+says "imbalance of weights         $ratios"
+try 4 "$bin/tremie-info" one --csv none.csv --table mood
+says "no none.csv is written: one has no series"
 try 2 "$bin/tremie-info" "$one" --csv series.csv
 says "--csv goes with a run"
 try 0 "$bin/tremie-info" "$(find one/series -name '*.h5' | sort | head -n 1)"
