@@ -89,7 +89,7 @@ void runtime_subdomains(struct runtime *runtime, const struct boxes *boxes, int6
 
 void runtime_init(struct runtime *runtime, int64_t step)
 {
-    *runtime = (struct runtime){.row_step = step, .imbalance = 1.0};
+    *runtime = (struct runtime){.row_step = step};
     runtime->started = runtime->row_started = runtime->mark = timer_now();
     series_init(&runtime->table, "runtime");
     add_columns(&runtime->table);
@@ -160,7 +160,7 @@ void runtime_row(struct runtime *runtime, const struct comm *comm, int64_t step,
                              (double)sums[0],
                              (double)sums[1],
                              (double)sums[2],
-                             runtime->imbalance};
+                             sizes->imbalance};
     for (size_t k = 0; k < sizeof counts / sizeof *counts; k++)
         row[n++] = counts[k];
     const int64_t numbers[] = {sizes->n_owned,       sizes->n_ghosts,     sizes->n_internal,

@@ -132,6 +132,14 @@ says "rate: " "pairs" "redistribute" "redistributions, high level" "redistributi
 [ "$(awk -F , '{ print NF }' runstats.csv | sort -u | wc -l)" = 1 ] || why+=" lines of unequal length in the CSV;"
 result runstats
 
+# All work is one rank's: the largest time is twice the mean, all but what an idle rank takes.
+try 0 mpirun -q -n 2 "$bin/tremie" run small.yaml --out apart --set time.end=0.02 --set 'decomposition.grid=[2, 1, 1]' \
+    --set 'domain.min=[-1, -1, -1]' --set 'domain.max=[9, 1, 1]' --set testing.search=all-pairs --set testing.search_every=50
+try 0 "$bin/tremie-runstats" apart
+awk '/^imbalance of/ { most[$3] = $6 } END { exit !(most["computing"] > 1.7 && most["computing"] <= 2 && most["weights"] == 2) }' said ||
+    why+=" imbalances of what is all on one rank;"
+result "imbalance of work"
+
 # -------------------------------------------------------------------------------- compare
 
 try 0 "$bin/tremie-compare" "$one" "$two"
