@@ -82,8 +82,8 @@ all_objects := $(library_objects) $(kernel_objects) $(main:%.c=$(BUILD)/%.o) $(t
 
 # --------------------------------------------------------------------------------------------- goals
 
-.PHONY: all hopper test soak fuzzers verify stability bench bench-peers bench-elements charts-quick lint help install \
-    clean unit_tests \
+.PHONY: all hopper dragline test soak fuzzers verify stability bench bench-peers bench-elements charts-quick \
+    lint help install clean unit_tests \
     verification_cases stability_cases
 .DEFAULT_GOAL := all
 
@@ -95,6 +95,12 @@ hopper:
 	@config/setup run
 	@$(MAKE) --no-print-directory all
 	@config/hopper $(BIN)
+
+##  make dragline     the same for the second example: jobs/dragline_settle.yaml, then jobs/dragline.yaml
+dragline:
+	@config/setup run
+	@$(MAKE) --no-print-directory all
+	@config/dragline $(BIN)
 
 ##  make test         set up what is missing, build, run all tests (FILTER=word: only some of them)
 test:
@@ -160,7 +166,7 @@ install: all
 	    $(DESTDIR)$(PREFIX)/share/tremie/jobs/batch
 	install -m 755 $(programs) $(DESTDIR)$(PREFIX)/bin
 	install -m 644 $(wildcard config/*.yaml) $(DESTDIR)$(PREFIX)/share/tremie/config
-	install -m 644 $(wildcard jobs/*.yaml jobs/*.csv jobs/*.stl jobs/*.md) $(DESTDIR)$(PREFIX)/share/tremie/jobs
+	install -m 644 $(wildcard jobs/*.yaml jobs/*.csv jobs/*.msh jobs/*.stl jobs/*.md) $(DESTDIR)$(PREFIX)/share/tremie/jobs
 	install -m 755 $(wildcard jobs/batch/*.sh) $(DESTDIR)$(PREFIX)/share/tremie/jobs/batch
 	install -m 644 jobs/batch/README.md $(DESTDIR)$(PREFIX)/share/tremie/jobs/batch
 

@@ -361,12 +361,12 @@ static int write_csv(const struct series *series, const char *path)
     return status;
 }
 
-static int show_series(const char *run, const char *csv)
+static int show_series(const char *run, const char *table, const char *csv)
 {
     struct series series;
     char *why;
     int status = REPORT_FINISHED;
-    if (!series_read(&series, run, "series", &why)) {
+    if (!series_read(&series, run, table, &why)) {
         printf("series              none (%s)\n", why);
         if (csv != NULL) {
             report_error("no %s is written: %s has no series", csv, run);
@@ -413,7 +413,8 @@ static int show_checkpoints(const struct comm *comm, const char *run)
     return worst;
 }
 
-static int show_run(const struct comm *comm, const char *run, const char *csv)
+static int show_run(const struct comm *comm, const char *run, const char *table,
+                    const char *csv)
 {
     char *job = array_format("%s/job.yaml", run), *segments = array_format("%s/series", run);
     struct stat entry;
@@ -424,7 +425,7 @@ static int show_run(const struct comm *comm, const char *run, const char *csv)
     } else {
         printf("%s: a run\n", run);
         status = show_checkpoints(comm, run);
-        const int shown = show_series(run, csv);
+        const int shown = show_series(run, table, csv);
         status = shown > status ? shown : status;
     }
     free(job);
@@ -435,16 +436,18 @@ static int show_run(const struct comm *comm, const char *run, const char *csv)
 int main(int argc, char **argv)
 {
     bool listed = false;
-    const char *csv = NULL;
+    const char *csv = NULL, *table = "series";
     const struct arguments_entry entries[] = {
         {"csv", 0, ARGUMENTS_TEXT, &csv, "FILE",
          "writes all samples of a run's series as comma-separated values", NULL},
+        {"table", 0, ARGUMENTS_TEXT, &table, "NAME",
+         "which of a run's series: series (as when left out), or runtime", NULL},
         {"list", 0, ARGUMENTS_FLAG, &listed, NULL,
          "lists the sums and data sets of a checkpoint as well", NULL},
     };
     const struct arguments_page page = {
         "tremie-info",
-        "FILE|RUN [--csv FILE] [--list]",
+        "FILE|RUN [--csv FILE] [--table NAME] [--list]",
         "Shows what a checkpoint, a snapshot, a series file or the folder of a run holds: step,\n"
         "time, counts, extents, masses, energies; and verifies the checksums.\n"
         "\n"
@@ -471,7 +474,7 @@ int main(int argc, char **argv)
     }
     COMM_CHECK(MPI_Init(NULL, NULL));
     const struct comm comm = comm_world();
-    status = S_ISDIR(entry.st_mode) ? show_run(&comm, argv[1], csv)
+    status = S_ISDIR(entry.st_mode) ? show_run(&comm, argv[1], table, csv)
                                     : show_file(&comm, argv[1], listed);
     COMM_CHECK(MPI_Finalize());
     return status;

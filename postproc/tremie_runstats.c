@@ -194,6 +194,24 @@ static void print_solids(const struct stats *stats)
            1e-3 * records_sum(&stats->rows, "nodes_told") / stats->steps);
 }
 
+/* How evenly boxes share out what they are cut by. */
+static void print_weights(const struct stats *stats)
+{
+    double *most = records_column(&stats->rows, "weight.max");
+    double *mean = records_column(&stats->rows, "weight.mean");
+    double sum = 0.0, worst = 0.0;
+    for (int i = 0; most != NULL && mean != NULL && i < stats->rows.n_rows; i++) {
+        const double ratio = most[i] / mean[i];
+        sum += ratio;
+        worst = ratio > worst ? ratio : worst;
+    }
+    if (sum > 0.0)
+        printf("%-28s %.6g (mean), %.6g (most)\n", "imbalance of weights",
+               sum / stats->rows.n_rows, worst);
+    free(most);
+    free(mean);
+}
+
 static void print_counts(const struct stats *stats)
 {
     print_events(stats, "searches", "searches", "search");
@@ -224,6 +242,7 @@ static void print_counts(const struct stats *stats)
                 1048576.0, " MiB");
     print_value(stats, "imbalance of computing",
                 (const char *const[3]){NULL, "imbalance", "imbalance"}, 1, "");
+    print_weights(stats);
 }
 
 static void print_stats(const struct stats *stats)

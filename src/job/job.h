@@ -436,7 +436,8 @@ struct job_section {
 struct job_content {
     char *name;
     struct job_region region;
-    int by; /* set of enum job_split */
+    char *follows; /* NULL: none; the body that the region moves with */
+    int by;        /* set of enum job_split */
 };
 
 /* Where the series follow a deformable body; one of the four says where. */

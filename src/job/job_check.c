@@ -1013,6 +1013,18 @@ static void removals_check(const struct check *check)
     }
 }
 
+/* A region moves with a rigid body. */
+static void follows_check(const struct check *check, const char *path, const char *name)
+{
+    const struct job_body *body = NULL;
+    for (int b = 0; name != NULL && b < check->job->n_bodies; b++)
+        if (check->job->bodies[b].name != NULL && strcmp(check->job->bodies[b].name, name) == 0)
+            body = &check->job->bodies[b];
+    if (name != NULL && (body == NULL || body->model != JOB_MODEL_RIGID))
+        mistake(check, path, "names '%s', which is no rigid body; the name of one is expected",
+                name);
+}
+
 static void contents_check(const struct check *check)
 {
     for (int i = 0; i < check->job->n_contents; i++) {
@@ -1022,6 +1034,8 @@ static void contents_check(const struct check *check)
             continue;
         PATH("contents.%d.region", i);
         region_check(check, path, &check->job->contents[i].region);
+        PATH("contents.%d.follows", i);
+        follows_check(check, path, check->job->contents[i].follows);
     }
 }
 

@@ -947,6 +947,10 @@ static const struct schema_key content_keys[] = {
      AT(struct job_content, name)},
     {"region", SCHEMA_GROUP, "spheres count whose centre is in it", .required = true,
      REGION_AT(struct job_content, region, region.given)},
+    {"follows", SCHEMA_NAME,
+     "a rigid body that the region moves and turns with, from where it is at time 0; without it "
+     "the region rests",
+     GIVEN(struct job_content, follows), AT(struct job_content, follows)},
     BY_MATERIAL(struct job_content),
     END};
 

@@ -165,6 +165,36 @@ static void place_forced(struct body *body)
     mesh_update(mesh);
 }
 
+/* ------------------------------------------------------------------------------------ frame */
+
+/* Where what moves with the body has come to, from its place at time 0. */
+static struct vec3 carry(const struct body *body, double time, struct vec3 x)
+{
+    if (body->rigid != NULL)
+        return rigid_place(body->rigid, x);
+    for (int m = 0; m < body->n_motions; m++) {
+        const struct motion_place place = motion_place(&body->motions[m], time);
+        x = motion_apply(&place, x);
+    }
+    return x;
+}
+
+struct body_frame body_frame(const struct body *body, double time)
+{
+    static const struct vec3 units[3] = {{1.0, 0.0, 0.0}, {0.0, 1.0, 0.0}, {0.0, 0.0, 1.0}};
+    struct body_frame frame = {.origin = carry(body, time, ZERO)};
+    for (int k = 0; k < 3; k++)
+        frame.axes[k] = vec3_sub(carry(body, time, units[k]), frame.origin);
+    return frame;
+}
+
+struct vec3 body_frame_reference(const struct body_frame *frame, struct vec3 x)
+{
+    const struct vec3 arm = vec3_sub(x, frame->origin);
+    return (struct vec3){vec3_dot(frame->axes[0], arm), vec3_dot(frame->axes[1], arm),
+                         vec3_dot(frame->axes[2], arm)};
+}
+
 /* -------------------------------------------------------------------------------------- all */
 
 static void copy_motions(struct body *body, const struct job_body *asked)

@@ -94,6 +94,15 @@ struct vec3 body_drift(const struct body *body, struct vec3 point);
 struct vec3 body_velocity(const struct body *body, struct vec3 point, struct vec3 normal);
 /* Angular velocity of the surface. */
 struct vec3 body_spin(const struct body *body);
+/* Where the body has come to: the point x of space moves with it as if it were a part of it. */
+struct body_frame {
+    struct vec3 origin;  /* where what was at the origin at time 0 is now [m] */
+    struct vec3 axes[3]; /* what pointed along x, y, z, of length 1 */
+};
+/* That of a rigid body at a time, of one that forces move now. */
+struct body_frame body_frame(const struct body *body, double time);
+/* Where what is at x now was at time 0. */
+struct vec3 body_frame_reference(const struct body_frame *frame, struct vec3 x);
 /* Is the body there at a step? */
 bool body_exists(const struct body *body, int64_t step, double dt);
 

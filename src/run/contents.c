@@ -12,6 +12,14 @@
 #include "model/sphere.h"
 #include "store/series.h"
 
+static int find_body(const struct bodies *bodies, const char *name)
+{
+    int found = -1;
+    for (int b = 0; name != NULL && b < bodies->n; b++)
+        found = strcmp(bodies->list[b].name, name) == 0 ? b : found;
+    return found;
+}
+
 void contents_init(struct contents *contents, const struct job *job,
                    const struct bodies *bodies)
 {
@@ -23,6 +31,7 @@ void contents_init(struct contents *contents, const struct job *job,
         char *why = NULL;
         CHECK(region_build(&content->region, &job->contents[c].region, bodies, &why), "%s",
               why);
+        content->follows = find_body(bodies, job->contents[c].follows);
         tally_init(&content->tally, &split);
         for (int k = 0; k < 3; k++)
             content->momentum[k] =
@@ -62,10 +71,12 @@ void contents_add_columns(const struct contents *contents, const struct job *job
     }
 }
 
-void contents_begin(struct contents *contents)
+void contents_begin(struct contents *contents, const struct bodies *bodies, double time)
 {
     for (int c = 0; c < contents->n; c++) {
         struct content *content = &contents->list[c];
+        if (content->follows >= 0)
+            content->frame = body_frame(&bodies->list[content->follows], time);
         const size_t size = (size_t)content->tally.n_parts * sizeof(struct exact_sum);
         memset(content->tally.number, 0, size);
         memset(content->tally.mass, 0, size);
@@ -81,7 +92,9 @@ void contents_add(struct contents *contents, const struct spheres *spheres, int 
     const double mass = 1.0 / sphere_inverse_mass(spheres, i);
     for (int c = 0; c < contents->n; c++) {
         struct content *content = &contents->list[c];
-        if (!region_contains(&content->region, x, 0.0))
+        const struct vec3 place =
+            content->follows < 0 ? x : body_frame_reference(&content->frame, x);
+        if (!region_contains(&content->region, place, 0.0))
             continue;
         tally_add(&content->tally, spheres, i);
         for (int k = 0; k < 3; k++) {

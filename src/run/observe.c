@@ -79,6 +79,14 @@ static void add_forced_columns(struct series *table, const struct body *body)
                           "%s.momentum_%c", body->name, axes[k]);
 }
 
+/* Is there work to tell of a body: does it move, or its surface run, as prescribed? */
+static bool has_work(const struct simulation *sim, int b)
+{
+    const struct body *body = &sim->bodies.list[b];
+    return sim->job->energy_ledger && body->rigid == NULL && body->skin == NULL &&
+           (body->moves || body->surface != NULL);
+}
+
 void observe_init(struct observe *observe, const struct simulation *sim)
 {
     *observe = (struct observe){0};
@@ -127,6 +135,9 @@ void observe_init(struct observe *observe, const struct simulation *sim)
             series_add_column(table, "N m",
                               "torque on the body about the origin, mean since the row before",
                               "%s.torque_%c", sim->bodies.list[b].name, axes[k]);
+        if (has_work(sim, b))
+            series_add_column(table, "J", "work of the body's prescribed motion on the spheres",
+                              "%s.work", sim->bodies.list[b].name);
         if (sim->bodies.list[b].rigid != NULL)
             add_forced_columns(table, &sim->bodies.list[b]);
     }
@@ -271,6 +282,14 @@ static double total_of(const struct simulation *sim, const struct exact_sum *sha
     return exact_sum_value(&sum);
 }
 
+/* A force works in half of the interval before the step and half of the one after: at the step
+ * half of what it adds is done, the mean of before and after. */
+static void add_twice_work(const struct simulation *sim, int b, struct exact_sum *sum)
+{
+    exact_sum_merge(sum, &sim->observe.work_before[b]);
+    exact_sum_merge(sum, &sim->facets.loads[b].work);
+}
+
 /* Of bodies that forces move; all ranks know them. */
 static void add_forced_energies(const struct simulation *sim, double energies[N_ENERGIES])
 {
@@ -336,14 +355,9 @@ static void sum_energies(struct simulation *sim, double energies[N_ENERGIES], do
     counts[2] = facet_contacts_count(&sim->facets) + touch_count(&sim->touch);
     facet_contacts_elastic_energy(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials,
                                   &sums[ENERGY_ELASTIC], &sums[ENERGY_SPRINGS]);
-    /* A force works in half of the interval before the step and half of the one after: at the
-     * step half of what it adds is done, the mean of before and after. */
-    for (int b = 0; b < sim->facets.n_bodies; b++) {
-        if (sim->bodies.list[b].rigid != NULL || sim->bodies.list[b].skin != NULL)
-            continue;
-        exact_sum_merge(&sums[ENERGY_WORK], &sim->observe.work_before[b]);
-        exact_sum_merge(&sums[ENERGY_WORK], &sim->facets.loads[b].work);
-    }
+    for (int b = 0; b < sim->facets.n_bodies; b++)
+        if (sim->bodies.list[b].rigid == NULL && sim->bodies.list[b].skin == NULL)
+            add_twice_work(sim, b, &sums[ENERGY_WORK]);
     const struct exact_sum *totals = sim->observe.totals;
     exact_sum_merge(&sums[ENERGY_FRICTION], &totals[OBSERVE_REMOVED_FRICTION]);
     exact_sum_merge(&sums[ENERGY_DAMPING], &totals[OBSERVE_REMOVED_DAMPING]);
@@ -474,6 +488,11 @@ static int add_body_values(struct simulation *sim, double *row, int n, double n_
             row[n++] = total_of(sim, sum) / n_steps;
             *sum = (struct exact_sum){0};
         }
+        if (has_work(sim, b)) {
+            struct exact_sum twice = {0};
+            add_twice_work(sim, b, &twice);
+            row[n++] = 0.5 * total_of(sim, &twice);
+        }
         if (sim->bodies.list[b].rigid != NULL)
             n = add_forced_values(sim->bodies.list[b].rigid, row, n);
     }
@@ -493,7 +512,7 @@ static int add_section_values(struct simulation *sim, double *row, int n)
 static int add_content_values(struct simulation *sim, double *row, int n)
 {
     double v[3], w[3];
-    contents_begin(&sim->contents);
+    contents_begin(&sim->contents, &sim->bodies, (double)sim->step * sim->dt);
     for (int i = 0; sim->contents.n > 0 && i < sim->spheres.n_owned; i++) {
         observe_motion(sim, i, v, w);
         contents_add(&sim->contents, &sim->spheres, i, v);

@@ -112,16 +112,34 @@ void redistribute_inner(struct simulation *sim)
     runtime_end(&sim->runtime, RUNTIME_SEARCH);
 }
 
+/* What this rank has to share out, which the caller frees; returns how many. */
+static int weigh(const struct simulation *sim, struct rcb_point **points)
+{
+    int n = sim->spheres.n_owned;
+    *points = array_allocate((size_t)(n + deform_sizes(&sim->deform).n_nodes), sizeof **points);
+    balance_spheres(*points, &sim->spheres, sim->job->decomposition.weights, &sim->contacts.now,
+                    &sim->candidates, &sim->facets);
+    for (int b = 0; b < sim->deform.n; b++)
+        n += balance_nodes(*points + n, &sim->deform.list[b].solid);
+    return n;
+}
+
+int64_t redistribute_weight(const struct simulation *sim)
+{
+    struct rcb_point *points;
+    int64_t sum = 0;
+    const int n = weigh(sim, &points);
+    for (int i = 0; i < n; i++)
+        sum += points[i].weight;
+    free(points);
+    return sum;
+}
+
 /* The low level: boxes are cut anew where work has drifted apart, or at first. */
 static void repartition(struct simulation *sim)
 {
-    int n = sim->spheres.n_owned;
-    struct rcb_point *points =
-        array_allocate((size_t)(n + deform_sizes(&sim->deform).n_nodes), sizeof *points);
-    balance_spheres(points, &sim->spheres, sim->job->decomposition.weights, &sim->contacts.now,
-                    &sim->candidates, &sim->facets);
-    for (int b = 0; b < sim->deform.n; b++)
-        n += balance_nodes(points + n, &sim->deform.list[b].solid);
+    struct rcb_point *points;
+    const int n = weigh(sim, &points);
     rcb_partition(&sim->boxes, sim->comm, n, points);
     free(points);
     sim->runtime.repartitions++;

@@ -9,6 +9,7 @@
 #define TREMIE_RUN_REDISTRIBUTE_H
 
 #include <stdbool.h>
+#include <stdint.h>
 
 struct contact_record;
 struct simulation;
@@ -30,6 +31,9 @@ void redistribute_first(struct simulation *sim);
  * one of those takes part that this rank owned before.  Returns how many arrived here that join
  * spheres which are far apart.  Collective. */
 int redistribute_restore(struct simulation *sim, int n, const struct contact_record *records);
+
+/* What this rank has to do in a step, as the low level weighs it [ns].  Local. */
+int64_t redistribute_weight(const struct simulation *sim);
 
 /* Books the motion of the step just done against the allowances; spent[] is the largest on any
  * rank. Finds out exactly where the bound says stale.  Collective when it does. */

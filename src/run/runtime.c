@@ -53,6 +53,12 @@ static void add_columns(struct series *table)
         series_add_column(table, "1", "number a rank, mean", "%s.mean", sizes[k]);
         series_add_column(table, "1", "number a rank, largest", "%s.max", sizes[k]);
     }
+    series_add_column(table, "ns", "cost of a step as boxes are cut, of a rank, least",
+                      "weight.min");
+    series_add_column(table, "ns", "cost of a step as boxes are cut, of a rank, mean",
+                      "weight.mean");
+    series_add_column(table, "ns", "cost of a step as boxes are cut, of a rank, largest",
+                      "weight.max");
     series_add_column(table, "bytes", "resident memory a rank, least", "memory.min");
     series_add_column(table, "bytes", "resident memory a rank, mean", "memory.mean");
     series_add_column(table, "bytes", "resident memory a rank, largest", "memory.max");
@@ -83,7 +89,7 @@ void runtime_subdomains(struct runtime *runtime, const struct boxes *boxes, int6
 
 void runtime_init(struct runtime *runtime, int64_t step)
 {
-    *runtime = (struct runtime){.row_step = step, .imbalance = 1.0};
+    *runtime = (struct runtime){.row_step = step};
     runtime->started = runtime->row_started = runtime->mark = timer_now();
     series_init(&runtime->table, "runtime");
     add_columns(&runtime->table);
@@ -154,7 +160,7 @@ void runtime_row(struct runtime *runtime, const struct comm *comm, int64_t step,
                              (double)sums[0],
                              (double)sums[1],
                              (double)sums[2],
-                             runtime->imbalance};
+                             sizes->imbalance};
     for (size_t k = 0; k < sizeof counts / sizeof *counts; k++)
         row[n++] = counts[k];
     const int64_t numbers[] = {sizes->n_owned,       sizes->n_ghosts,     sizes->n_internal,
@@ -162,6 +168,7 @@ void runtime_row(struct runtime *runtime, const struct comm *comm, int64_t step,
                                sizes->n_nodes,       sizes->n_copies,     sizes->n_elements};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         spread(comm, row, &n, numbers[k], 1.0);
+    spread(comm, row, &n, sizes->weight, 1.0);
     spread(comm, row, &n, (int64_t)runtime_memory(), 1.0);
     CHECK(n == runtime->table.n_columns, "%d values for %d columns", n,
           runtime->table.n_columns);

@@ -34,6 +34,9 @@ struct runtime_sizes {
     int64_t n_spheres; /* in the run */
     int64_t n_nodes, n_copies,
         n_elements; /* of bodies that deform: moved, not moved, computed */
+    int64_t weight; /* see redistribute_weight() [ns] */
+    double
+        imbalance; /* of the time that ranks worked, see balance.h; 1 before the first verdict */
 };
 
 struct runtime {
@@ -44,9 +47,8 @@ struct runtime {
     int64_t searches, prunes, redistributions, repartitions, migrated,
         particle_steps;           /* since the last row */
     int64_t nodes_migrated, told; /* of bodies that deform: how many; bytes sent about them */
-    double imbalance;
-    struct series table;      /* on rank 0 */
-    struct series subdomains; /* boxes of all ranks at each save, on rank 0 */
+    struct series table;          /* on rank 0 */
+    struct series subdomains;     /* boxes of all ranks at each save, on rank 0 */
 };
 
 void runtime_init(struct runtime *runtime, int64_t step);

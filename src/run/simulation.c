@@ -433,6 +433,8 @@ struct runtime_sizes simulation_sizes(const struct simulation *sim)
         .n_nodes = solids.n_nodes,
         .n_copies = solids.n_copies,
         .n_elements = solids.n_elements,
+        .weight = redistribute_weight(sim),
+        .imbalance = sim->balance.imbalance > 0.0 ? sim->balance.imbalance : 1.0,
     };
 }
 

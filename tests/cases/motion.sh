@@ -49,6 +49,41 @@ equal {given,table}/checkpoints/step_000000000600.h5
 result "a table of one gravity is that gravity"
 rm -rf given table
 
+# ------------------------------------------------------------------ what a body carries
+cat > cup.yaml << 'END'
+time: {end: 1.2, step: 1.0e-4}
+materials:
+  ore: {density: 2500, young: 5.0e+7, poisson: 0.25}
+contact:
+  pairs: [{between: [ore, ore], friction: 0.5, restitution: 0.5}]
+spheres:
+  - {name: load, material: ore, radius: 0.02, packing: {kind: lattice, count: 8, spacing: 0.0402, corner: [-0.17, -0.02, 0], size: [0.34, 0.0402]}}
+bodies:
+  - name: cup
+    material: ore
+    geometry: {kind: box, open: top, min: [-0.2, -0.05, 0], max: [0.2, 0.05, 0.1]}
+    motion: {path: {axis: [0, 0, 1], points: [{time: 0.1}, {time: 0.2, place: [0, 0, 0.025], angle: 0.08}, {time: 1.1, place: [0.3, 0, 0.5], angle: 1.57}]}}
+contents:
+  - {name: cargo, follows: cup, region: {kind: box, min: [-0.2, -0.05, 0], max: [0.2, 0.05, 0.1]}}
+  - {name: there, region: {kind: box, min: [0.1, -0.05, 0.5], max: [0.5, 0.05, 0.6]}}
+domain: {min: [-1, -1, -1], max: [1, 1, 1]}
+checkpoint: {every: {wall: 0}}
+END
+scenes=.
+run 2 cup cup
+series cup
+near "what is in the cup, whenever it was counted" "$(columns '
+    { least = least == "" || $at["cargo.count"] < least ? $at["cargo.count"] : least } END { print least }')" 8 0
+near "what is in its box, had it not turned" "$(columns 'END { print $at["there.count"] < 6 }')" 1 0
+near "the work that lifts it" "$(columns 'END { print $at["cup.work_J"] }')" \
+    "$(awk 'BEGIN { print 8 * 2500 * 4 / 3 * 3.14159265 * 0.02^3 * 9.81 * 0.5 }')" 0.1
+near "that work, of all that moves" "$(columns 'END { print $at["cup.work_J"] / $at["work_bodies_J"] }')" 1 0
+tremie 1 check cup.yaml --set contents.0.follows=spoon
+says "contents.0.follows names 'spoon', which is no rigid body; the name of one is expected"
+result "what a body carries is counted as it goes"
+rm -rf cup
+scenes=$OLDPWD/tests/cases/scenes
+
 # ------------------------------------------------------------------ failures
 fails 2 "$scenes/plug.yaml" "body 'plug' appeared where spheres are, at step 201 (0.0201 s): sphere " \
     --set 'bodies.1.active=[0.02, 1]' --set 'bodies.1.geometry.point=[0, 0, 0.125]'

@@ -132,6 +132,14 @@ says "rate: " "pairs" "redistribute" "redistributions, high level" "redistributi
 [ "$(awk -F , '{ print NF }' runstats.csv | sort -u | wc -l)" = 1 ] || why+=" lines of unequal length in the CSV;"
 result runstats
 
+# All work is one rank's: the largest time is twice the mean, all but what an idle rank takes.
+try 0 mpirun -q -n 2 "$bin/tremie" run small.yaml --out apart --set time.end=0.02 --set 'decomposition.grid=[2, 1, 1]' \
+    --set 'domain.min=[-1, -1, -1]' --set 'domain.max=[9, 1, 1]' --set testing.search=all-pairs --set testing.search_every=50
+try 0 "$bin/tremie-runstats" apart
+awk '/^imbalance of/ { most[$3] = $6 } END { exit !(most["computing"] > 1.7 && most["computing"] <= 2 && most["weights"] == 2) }' said ||
+    why+=" imbalances of what is all on one rank;"
+result "imbalance of work"
+
 # -------------------------------------------------------------------------------- compare
 
 try 0 "$bin/tremie-compare" "$one" "$two"
@@ -171,6 +179,14 @@ try 0 "$bin/tremie-info" one --csv series.csv
 head -n 1 series.csv | grep -q '^step,time_s,n_spheres,.*,speed_max_m_s,.*bin.torque_x_N_m' || why+=" headings of the series;"
 [ "$(tail -n 1 series.csv | cut -d , -f 1-3)" = "$(sed -n 's/^  \(step\|time\|n_spheres\)  *\([^ ]*\).*/\2/p' said | paste -sd ,)" ] ||
     why+=" the series ends otherwise than it says;"
+try 0 "$bin/tremie-info" two --csv runtime.csv --table runtime
+ratios=$(awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
+    { sum += ratio = $at["weight.max_ns"] / $at["weight.mean_ns"]; most = ratio > most ? ratio : most }
+    END { printf "%.6g (mean), %.6g (most)", sum / (NR - 1), most }' runtime.csv)
+try 0 "$bin/tremie-runstats" two
+says "imbalance of weights         $ratios"
+try 4 "$bin/tremie-info" one --csv none.csv --table mood
+says "no none.csv is written: one has no series"
 try 2 "$bin/tremie-info" "$one" --csv series.csv
 says "--csv goes with a run"
 try 0 "$bin/tremie-info" "$(find one/series -name '*.h5' | sort | head -n 1)"

@@ -178,6 +178,31 @@ TEST(no_vertex_is_faster_than_speed_max)
     bodies_clear(&bodies);
 }
 
+TEST(a_frame_moves_as_the_vertices_do)
+{
+    struct job_motion motions[2];
+    struct job_body asked = spinning_box(&motions[0]);
+    motions[1] = (struct job_motion){.velocity = {-3, 0, 1},
+                                     .pivot = {0.5, 0.25, -2},
+                                     .axis = {0.6, 0, 0.8},
+                                     .rate = -1.5,
+                                     .start = 0.2,
+                                     .stop = 0.6};
+    asked.n_motions = 2;
+    struct bodies bodies;
+    build(&bodies, &asked);
+    for (int step = 0; step < 1000; step += 333) {
+        bodies_place(&bodies, step, 1e-3);
+        const struct body_frame frame = body_frame(&bodies.list[0], step * 1e-3);
+        const struct mesh *mesh = &bodies.list[0].mesh;
+        for (int v = 0; v < 8; v++) {
+            const struct vec3 back = body_frame_reference(&frame, mesh->place[v]);
+            EXPECT_NEAR(vec3_norm(vec3_sub(back, mesh->reference[v])), 0.0, 1e-14);
+        }
+    }
+    bodies_clear(&bodies);
+}
+
 int main(int argc, char **argv)
 {
     return check_run(argc, argv);
