@@ -506,6 +506,7 @@ struct job {
         double end;    /* [s]; a whole number of steps */
         double step;   /* [s]; 0 means auto */
         double safety; /* step: auto takes this share of the critical step */
+        int substeps;  /* of finite elements in one step */
     } time;
     struct {
         bool given;

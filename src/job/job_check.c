@@ -1013,16 +1013,28 @@ static void removals_check(const struct check *check)
     }
 }
 
-/* A region moves with a rigid body. */
+/* Has a body a frame: is it rigid, or is a part of it moved like one? */
+static bool has_frame(const struct job_body *body)
+{
+    bool follows = body->model == JOB_MODEL_RIGID;
+    for (int k = 0; k < body->solid.n_boundary; k++)
+        follows = follows || body->solid.boundary[k].n_motions > 0;
+    return follows;
+}
+
+/* A region moves with such a body. */
 static void follows_check(const struct check *check, const char *path, const char *name)
 {
     const struct job_body *body = NULL;
     for (int b = 0; name != NULL && b < check->job->n_bodies; b++)
         if (check->job->bodies[b].name != NULL && strcmp(check->job->bodies[b].name, name) == 0)
             body = &check->job->bodies[b];
-    if (name != NULL && (body == NULL || body->model != JOB_MODEL_RIGID))
-        mistake(check, path, "names '%s', which is no rigid body; the name of one is expected",
-                name);
+    if (name != NULL && (body == NULL || !has_frame(body)))
+        mistake(
+            check, path,
+            "names '%s', which is no rigid body, nor one of which a set follows a motion; the "
+            "name of one is expected",
+            name);
 }
 
 static void contents_check(const struct check *check)

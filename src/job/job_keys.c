@@ -122,6 +122,10 @@ static const struct schema_key time_keys[] = {
      AT(struct job, time.step)},
     {"safety", SCHEMA_NUMBER, "share of the critical step that `step: auto` takes", .unit = "1",
      .standard = "0.2", ABOVE_TO(0.0, 1.0), AT(struct job, time.safety)},
+    {"substeps", SCHEMA_INT,
+     "steps that finite elements take in one of the spheres and of all contacts, whose forces stay "
+     "as they are meanwhile: for elements much stiffer or smaller than spheres need",
+     .standard = "1", BETWEEN(1.0, 1000.0), AT(struct job, time.substeps)},
     END};
 
 static const struct schema_key hardening_table_keys[] = {
@@ -948,8 +952,8 @@ static const struct schema_key content_keys[] = {
     {"region", SCHEMA_GROUP, "spheres count whose centre is in it", .required = true,
      REGION_AT(struct job_content, region, region.given)},
     {"follows", SCHEMA_NAME,
-     "a rigid body that the region moves and turns with, from where it is at time 0; without it "
-     "the region rests",
+     "a rigid body that the region moves and turns with, from where it is at time 0; of a body that "
+     "deforms, as the first of its sets that follows a `motion`; without it the region rests",
      GIVEN(struct job_content, follows), AT(struct job_content, follows)},
     BY_MATERIAL(struct job_content),
     END};

@@ -197,18 +197,32 @@ struct vec3 body_frame_reference(const struct body_frame *frame, struct vec3 x)
 
 /* -------------------------------------------------------------------------------------- all */
 
-static void copy_motions(struct body *body, const struct job_body *asked)
+static void copy_motions(struct body *body, int n_motions, const struct job_motion *motions)
 {
-    body->motions = array_allocate((size_t)asked->n_motions, sizeof *body->motions);
-    for (int m = 0; m < asked->n_motions; m++) {
+    body->n_motions = n_motions;
+    body->motions = array_allocate((size_t)n_motions, sizeof *body->motions);
+    for (int m = 0; m < n_motions; m++) {
         struct job_motion *motion = &body->motions[m];
-        *motion = asked->motions[m];
+        *motion = motions[m];
         const size_t n = (size_t)motion->path.n;
         motion->path.points = array_allocate(n, sizeof *motion->path.points);
         if (n > 0)
-            memcpy(motion->path.points, asked->motions[m].path.points,
+            memcpy(motion->path.points, motions[m].path.points,
                    n * sizeof *motion->path.points);
     }
+}
+
+/* Its own; of a body that deforms those of the first set that follows some. */
+static void take_motions(struct body *body, const struct job_body *asked)
+{
+    const struct job_solid *solid = &asked->solid;
+    int item = 0;
+    while (item < solid->n_boundary && solid->boundary[item].n_motions == 0)
+        item++;
+    if (job_deforms(asked) && item < solid->n_boundary)
+        copy_motions(body, solid->boundary[item].n_motions, solid->boundary[item].motions);
+    else
+        copy_motions(body, asked->n_motions, asked->motions);
 }
 
 static int first_of(int *smooth, int face)
@@ -285,11 +299,10 @@ static void body_build(struct body *body, const struct job_body *asked, double e
 {
     *body = (struct body){.name = array_string(asked->name),
                           .material = asked->material,
-                          .n_motions = asked->n_motions,
                           .exists = true,
                           .comes_and_goes = asked->comes_and_goes,
                           .active = {asked->active[0], asked->active[1]}};
-    copy_motions(body, asked);
+    take_motions(body, asked);
     geometry_build_mesh(&body->mesh, asked);
     if (asked->driven.given || asked->free.given) {
         body->rigid = array_allocate(1, sizeof *body->rigid);

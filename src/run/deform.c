@@ -4,6 +4,7 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <string.h>
 
 #include "base/array.h"
 #include "base/report.h"
@@ -191,7 +192,7 @@ static void build_body(struct deform *deform, const struct simulation *sim, int 
 
 void deform_init(struct deform *deform, const struct simulation *sim, enum isa isa)
 {
-    *deform = (struct deform){0};
+    *deform = (struct deform){.substeps = sim->job->time.substeps};
     deform->list = array_allocate((size_t)sim->bodies.n, sizeof *deform->list);
     deform->near = array_allocate((size_t)sim->comm->n_ranks, sizeof *deform->near);
     deform->pushing = array_allocate((size_t)sim->comm->n_ranks, sizeof *deform->pushing);
@@ -209,6 +210,8 @@ void deform_clear(struct deform *deform, const struct comm *comm)
         deform_skin_clear(&deform->list[k].skin);
         free(deform->list[k].balls);
         free(deform->list[k].inner);
+        free(deform->list[k].held);
+        free(deform->list[k].held_turns);
     }
     comm_mail_clear(&deform->mail);
     free(deform->near);
@@ -251,10 +254,22 @@ static void explain(const struct simulation *sim, const struct deform_body *defo
                                            [SOLID_LIMITS_INVERTED] = "is turned inside out",
                                            [SOLID_LIMITS_NOT_A_NUMBER] =
                                                "is no more at places that are numbers"};
-    const struct solid_limits_fault fault = solid_limits_fault(&deform->solid, sim->dt);
+    const struct solid_limits_fault fault =
+        solid_limits_fault(&deform->solid, deform_dt(&sim->deform, sim->dt));
     snprintf(what, size, "element %d of body '%.60s' at (%.5g, %.5g, %.5g) m %s",
              fault.element + 1, sim->bodies.list[deform->body].name, fault.place.x,
              fault.place.y, fault.place.z, failures[fault.failure]);
+}
+
+/* Of the elements, in a step of theirs within the run's. */
+static void find_forces(struct simulation *sim, struct deform_body *deform, int substep)
+{
+    if (sim->deform.failed ||
+        solid_forces(&deform->solid, deform_step(&sim->deform, sim->step) + substep,
+                     deform_dt(&sim->deform, sim->dt)))
+        return;
+    sim->deform.failed = true;
+    explain(sim, deform, sim->watch.what, sizeof sim->watch.what);
 }
 
 void deform_plan(struct simulation *sim)
@@ -268,27 +283,63 @@ void deform_plan(struct simulation *sim)
         solid->gravity[0] = sim->gravity.x;
         solid->gravity[1] = sim->gravity.y;
         solid->gravity[2] = sim->gravity.z;
-        if (!solid_forces(solid, sim->step, sim->dt)) {
-            sim->deform.failed = true;
-            explain(sim, deform, sim->watch.what, sizeof sim->watch.what);
+        find_forces(sim, deform, 0);
+    }
+    sim->balance.busy += timer_now() - began;
+}
+
+/* Contacts push on while elements take their steps: solid_move() forgets what they do. */
+static void hold_contacts(struct deform_body *deform)
+{
+    const size_t n = (size_t)deform->solid.n_nodes;
+    if (deform->held == NULL)
+        deform->held = array_allocate(n, sizeof *deform->held);
+    memcpy(deform->held, deform->solid.contact, n * sizeof *deform->held);
+    if (deform->solid.turns.n_nodes == 0)
+        return;
+    if (deform->held_turns == NULL)
+        deform->held_turns = array_allocate(n, sizeof *deform->held_turns);
+    memcpy(deform->held_turns, deform->solid.turns.contact, n * sizeof *deform->held_turns);
+}
+
+static void push_on(struct deform_body *deform)
+{
+    const size_t n = (size_t)deform->solid.n_nodes;
+    memcpy(deform->solid.contact, deform->held, n * sizeof *deform->held);
+    if (deform->solid.turns.n_nodes > 0)
+        memcpy(deform->solid.turns.contact, deform->held_turns, n * sizeof *deform->held_turns);
+}
+
+static void move_all(struct simulation *sim, int substep)
+{
+    const double began = timer_now();
+    for (int k = 0; k < sim->deform.n; k++) {
+        struct deform_body *deform = &sim->deform.list[k];
+        if (substep > 0) {
+            push_on(deform);
+            find_forces(sim, deform, substep);
+        } else if (sim->deform.substeps > 1) {
+            hold_contacts(deform);
         }
+        solid_move(&deform->solid, deform_step(&sim->deform, sim->step) + substep,
+                   deform_dt(&sim->deform, sim->dt));
     }
     sim->balance.busy += timer_now() - began;
 }
 
 void deform_move(struct simulation *sim)
 {
-    const double began = timer_now();
+    for (int substep = 0; substep < sim->deform.substeps; substep++) {
+        move_all(sim, substep);
+        deform_share_tell(sim);
+    }
     sim->deform.spent = 0.0;
     for (int k = 0; k < sim->deform.n; k++) {
-        struct deform_body *deform = &sim->deform.list[k];
-        solid_move(&deform->solid, sim->step, sim->dt);
+        const struct deform_body *deform = &sim->deform.list[k];
         const double spent =
             deform_skin_speed(deform) * sim->dt / sim->body_allowance[deform->body];
         sim->deform.spent = spent > sim->deform.spent ? spent : sim->deform.spent;
     }
-    sim->balance.busy += timer_now() - began;
-    deform_share_tell(sim);
 }
 
 /* ---- What others ask
@@ -347,7 +398,8 @@ void deform_energies(struct simulation *sim, struct solid_energies *energies)
     sim->deform.hourglass = false;
     for (int k = 0; k < sim->deform.n; k++) {
         struct solid_energies own = {.sums = {{{0}, 0, 0}}};
-        solid_energies_add(&sim->deform.list[k].solid, sim->step, sim->dt, &own);
+        solid_energies_add(&sim->deform.list[k].solid, deform_step(&sim->deform, sim->step),
+                           deform_dt(&sim->deform, sim->dt), &own);
         exact_sum_reduce(sim->comm, own.sums, SOLID_N_ENERGIES);
         for (int e = 0; e < SOLID_N_ENERGIES; e++)
             exact_sum_merge(&energies->sums[e], &own.sums[e]);
@@ -364,11 +416,12 @@ static struct deform_limit find_limit(const struct simulation *sim, int k, bool 
     struct node_springs springs;
     node_springs_find(&springs, sim, k);
     if (springs.any || !touched) {
+        node_springs_slow(&springs, sim, k, sim->deform.substeps);
         const struct solid_limits own = (touched ? solid_limits_touched : solid_limits_find)(
             &deform->solid, springs.stiffness, springs.damping);
-        limit.step = own.step;
+        limit.step = sim->deform.substeps * own.step;
         comm_min(sim->comm, &limit.step, 1);
-        const bool is_least = own.element >= 0 && own.step == limit.step;
+        const bool is_least = own.element >= 0 && sim->deform.substeps * own.step == limit.step;
         double first = is_least ? own.element : (double)INFINITY;
         comm_min(sim->comm, &first, 1);
         if (is_least && own.element == first) {

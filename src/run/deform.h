@@ -29,6 +29,8 @@ struct deform_body {
     int n_balls, first_ball; /* counted likewise */
     struct solid_ball *balls;
     int *inner; /* SOLID_BALL_INNER of each: its inner nodes among the skin's points */
+    /* Of nodes with contacts, while elements take several steps: */
+    double (*held)[3], (*held_turns)[3]; /* forces and moments [N], [N m] */
 };
 
 struct deform {
@@ -39,12 +41,23 @@ struct deform {
     bool sheets, turns; /* has some body shells or membranes; does some node turn? */
     bool failed;        /* some element here has, in this step */
     bool hourglass;     /* some solid has too much energy in hourglass modes */
+    int substeps;       /* that elements take in a step */
     double spent;       /* share of their allowances that surfaces have used in the last step */
     int n_near,
         *near; /* ranks with copies of nodes moved here, or whose nodes have copies here */
     int n_pushing, *pushing; /* those of which some node may be touched on the other */
     struct comm_mail mail;
 };
+
+/* The elements' own step and how many of them there were when one of the run's begins. */
+static inline double deform_dt(const struct deform *deform, double dt)
+{
+    return dt / deform->substeps;
+}
+static inline int64_t deform_step(const struct deform *deform, int64_t step)
+{
+    return step * deform->substeps;
+}
 
 void deform_init(struct deform *deform, const struct simulation *sim, enum isa isa);
 void deform_clear(struct deform *deform, const struct comm *comm);

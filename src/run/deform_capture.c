@@ -86,10 +86,11 @@ static void add_nodes(const struct simulation *sim, struct solid *solid,
                       const struct solid_surface *surface, struct table *table)
 {
     double(*areas)[3] = node_areas(solid, surface);
-    solid_supports_set(&solid->supports, sim->step + 1, sim->dt);
+    const double dt = deform_dt(&sim->deform, sim->dt);
+    solid_supports_set(&solid->supports, deform_step(&sim->deform, sim->step) + 1, dt);
     for (int i = 0; i < solid->n_nodes; i++)
         if (solid->moves[i])
-            put_node(solid, i, sim->dt, areas[i], table);
+            put_node(solid, i, dt, areas[i], table);
     free(areas);
 }
 

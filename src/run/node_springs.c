@@ -155,6 +155,15 @@ void node_springs_find(struct node_springs *springs, const struct simulation *si
     free(all.list);
 }
 
+void node_springs_slow(const struct node_springs *springs, const struct simulation *sim,
+                       int deform, int n)
+{
+    for (int i = 0; n > 1 && i < sim->deform.list[deform].solid.n_nodes; i++) {
+        springs->stiffness[i] *= (double)n * n;
+        springs->damping[i] *= n;
+    }
+}
+
 void node_springs_clear(struct node_springs *springs)
 {
     free(springs->stiffness);

@@ -18,6 +18,10 @@ struct node_springs {
 
 /* Of all nodes of a body among those that deform.  Collective. */
 void node_springs_find(struct node_springs *springs, const struct simulation *sim, int deform);
+/* As elements feel them that take n steps in one of the contacts: such a step is stable with
+ * them if the contacts' step is, with ω² = λ/n² + k/m of an element's λ (12.20). */
+void node_springs_slow(const struct node_springs *springs, const struct simulation *sim,
+                       int deform, int n);
 void node_springs_clear(struct node_springs *springs);
 
 #endif

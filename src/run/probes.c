@@ -185,7 +185,7 @@ static void add_items(const struct simulation *sim, const struct probe *probe,
         const int i = probe->items[k];
         if (is_of_nodes(probe)) {
             if (solid->moves[i])
-                add_node(solid, i, sim->dt, probe->share[k], sums);
+                add_node(solid, i, deform_dt(&sim->deform, sim->dt), probe->share[k], sums);
         } else if (solid_counts(solid, i)) {
             add_element(solid, i, probe->share[k], sums, most);
         }
@@ -202,7 +202,9 @@ int probes_values(struct simulation *sim, double *row, int n)
     struct exact_sum *sums = array_allocate(n_sums, sizeof *sums);
     double *most = array_allocate((size_t)probes->n * MOST, sizeof *most);
     for (int k = 0; k < sim->deform.n; k++)
-        solid_supports_set(&sim->deform.list[k].solid.supports, sim->step + 1, sim->dt);
+        solid_supports_set(&sim->deform.list[k].solid.supports,
+                           deform_step(&sim->deform, sim->step) + 1,
+                           deform_dt(&sim->deform, sim->dt));
     for (int p = 0; p < probes->n; p++) {
         add_items(sim, &probes->list[p], sums + at, most + (ptrdiff_t)MOST * p);
         at += n_means(&probes->list[p]);

@@ -141,7 +141,8 @@ static int add_values(struct simulation *sim, struct solid *solid, double n_step
         memset(supports->list[s].force, 0, sizeof supports->list[s].force);
         sums[PARTS * s + WORK] = supports->list[s].work;
     }
-    add_step(solid, sim->step, sim->dt, sums);
+    add_step(solid, deform_step(&sim->deform, sim->step), deform_dt(&sim->deform, sim->dt),
+             sums);
     exact_sum_reduce(sim->comm, sums, PARTS * supports->n);
     for (int s = 0; s < supports->n; s++) {
         const struct solid_support *support = &supports->list[s];
@@ -158,7 +159,11 @@ static int add_values(struct simulation *sim, struct solid *solid, double n_step
 
 int reactions_values(struct simulation *sim, double n_steps, double *row, int n)
 {
+    /* Of this step the first is counted; in the first row there is no rest of one before. */
+    const bool is_first = n_steps == (double)(sim->step + 1);
+    const double n_substeps = is_first ? (n_steps - 1.0) * sim->deform.substeps + 1.0
+                                       : n_steps * sim->deform.substeps;
     for (int k = 0; k < sim->deform.n; k++)
-        n = add_values(sim, &sim->deform.list[k].solid, n_steps, row, n);
+        n = add_values(sim, &sim->deform.list[k].solid, n_substeps, row, n);
     return n;
 }

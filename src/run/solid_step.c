@@ -128,16 +128,18 @@ static int worst_corner(const struct ground *ground, int e, const double *of_nod
     return worst;
 }
 
-/* The element that allows least, as solid_limits_find() in a run. */
+/* The element that allows least, as solid_limits_find() and node_springs_slow() in a run. */
 static struct solid_step find_least(const struct ground *ground)
 {
+    const double n = ground->job->time.substeps;
     struct solid_step least = {.step = (double)INFINITY, .element = -1, .node = -1};
     for (int e = 0; e < ground->mesh->n_elements; e++) {
         double stiffness, damping;
         const struct solid_element_load load = load_of(ground, e);
         const int node = worst_corner(ground, e, ground->stiffness, &stiffness);
         (void)worst_corner(ground, e, ground->damping, &damping);
-        const double step = solid_element_critical_step(&load, stiffness, damping);
+        const double step =
+            n * solid_element_critical_step(&load, n * n * stiffness, n * damping);
         if (step < least.step)
             least = (struct solid_step){.step = step, .element = e, .node = node};
     }

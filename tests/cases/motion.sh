@@ -79,7 +79,7 @@ near "the work that lifts it" "$(columns 'END { print $at["cup.work_J"] }')" \
     "$(awk 'BEGIN { print 8 * 2500 * 4 / 3 * 3.14159265 * 0.02^3 * 9.81 * 0.5 }')" 0.1
 near "that work, of all that moves" "$(columns 'END { print $at["cup.work_J"] / $at["work_bodies_J"] }')" 1 0
 tremie 1 check cup.yaml --set contents.0.follows=spoon
-says "contents.0.follows names 'spoon', which is no rigid body; the name of one is expected"
+says "contents.0.follows names 'spoon', which is no rigid body, nor one of which a set follows a motion; the name of one is expected"
 result "what a body carries is counted as it goes"
 rm -rf cup
 scenes=$OLDPWD/tests/cases/scenes
