@@ -347,7 +347,7 @@ struct job_body {
     enum job_model model;
     struct job_solid solid;
     struct {              /* shell, membrane */
-        double thickness; /* [m] */
+        double thickness; /* [m]; of a rigid body for advice alone, 0: not given */
         double cell;      /* wanted width of an element [m]; 0: a facet is one */
         int layers;       /* points through the thickness of a shell */
     } sheet;

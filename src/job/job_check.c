@@ -855,6 +855,9 @@ static void parts_check(const struct check *check, const struct job_body *body, 
 {
     const struct job_solid *solid = &body->solid;
     char path[64];
+    PATH("bodies.%d.thickness", i);
+    if (body->model != JOB_MODEL_SOLID && !(body->sheet.thickness > 0.0))
+        mistake(check, path, "is missing; a number above 0 is expected");
     PATH("bodies.%d.sets", i);
     names_check(check, path, solid->n_sets, solid->sets, sizeof *solid->sets);
     for (int k = 0; k < solid->n_sets; k++) {

@@ -828,9 +828,11 @@ static const struct schema_key body_keys[] = {
      "its surface. Sets that come with a shell or membrane: `all`, `surface`; `rim`, its free "
      "edges",
      .required = true, .kinds = RIGID | SHEETS, .inside = geometry_keys},
-    {"thickness", SCHEMA_NUMBER, "how thick it is, half of it on each side of its geometry",
-     .unit = "m", .required = true, ABOVE_TO(0.0, FAR), .kinds = SHEETS,
-     AT(struct job_body, sheet.thickness)},
+    {"thickness", SCHEMA_NUMBER,
+     "how thick it is, half of it on each side of its geometry; shells and membranes need it. Of a "
+     "rigid body it changes nothing: `tremie check --advise` judges by it",
+     .unit = "m", ABOVE_TO(0.0, FAR), .kinds = RIGID | SHEETS,
+     GIVEN(struct job_body, sheet.thickness), AT(struct job_body, sheet.thickness)},
     {"thicknesses", SCHEMA_LIST, "of sets with other thicknesses", UP_TO(1000.0),
      .kinds = SHEETS, .inside = thickness_keys, GIVEN(struct job_body, solid.n_thicknesses),
      LIST_AT(struct job_body, solid.thicknesses, solid.n_thicknesses)},

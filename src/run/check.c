@@ -16,6 +16,7 @@
 #include "model/region.h"
 #include "model/rigid.h"
 #include "physics/critical_step.h"
+#include "run/advise.h"
 #include "run/chain.h"
 #include "run/inflow.h"
 #include "run/limits.h"
@@ -707,10 +708,11 @@ static void print_start(const struct job *job, const struct comm *comm)
     simulation_destroy(&sim);
 }
 
+static const double SECONDS_A_SPHERE = 60e-9; /* a step */
+
 /* Time and memory, of so many spheres in the mean and at most. */
 static void print_cost(const struct job *job, double n_mean, double n_most, int n_ranks)
 {
-    static const double SECONDS_A_SPHERE = 60e-9;
     const struct solid_survey_cost solids = solid_survey_cost(job);
     const double n_steps = job->time.end / job->time.step;
     const double seconds = n_steps * (n_mean * SECONDS_A_SPHERE + solids.seconds) / n_ranks;
@@ -728,7 +730,25 @@ static void print_cost(const struct job *job, double n_mean, double n_most, int 
                    solids.bytes * 1e-6, solids.bytes / solids.n_elements);
 }
 
-void check_print(const struct job *job, const struct comm *comm)
+/* Also where spheres will come in. */
+static struct advise_cloud cloud_of(const struct job *job, const struct bodies *bodies,
+                                    const struct extent *spheres, double n_mean)
+{
+    struct extent extent = *spheres;
+    for (int k = 0; k < job->n_insertions; k++) {
+        struct region region;
+        char *why = NULL;
+        if (region_build(&region, &job->insertions[k].region, bodies, &why)) {
+            extent_add(&extent, region.low, 0.0);
+            extent_add(&extent, region.high, 0.0);
+            region_clear(&region);
+        }
+        free(why);
+    }
+    return (struct advise_cloud){extent.low, extent.high, n_mean * SECONDS_A_SPHERE};
+}
+
+void check_print(const struct job *job, const struct comm *comm, bool advise)
 {
     enum { START_MOST = 4000000 };
     struct extent scene = extent_nothing();
@@ -745,7 +765,17 @@ void check_print(const struct job *job, const struct comm *comm)
     limits_spheres_init(&all, job);
     double radius_most = 0.0;
     const int64_t n = print_groups(job, &bodies, &materials, &all, &scene, &radius_most);
+    double n_mean = (double)n, n_most = (double)n;
+    for (int k = 0; k < job->n_insertions; k++) {
+        const struct inflow inflow = inflow_of(job, k);
+        n_mean += inflow.n_mean;
+        n_most += inflow.n;
+    }
     survey_print(job, &bodies, &materials, &all);
+    if (advise) {
+        const struct advise_cloud cloud = cloud_of(job, &bodies, &scene, n_mean);
+        advise_print(job, &bodies, &materials, &all, &cloud);
+    }
     limits_spheres_clear(&all);
     materials_clear(&materials);
     warn_of_ends(job, &bodies, radius_most);
@@ -764,12 +794,6 @@ void check_print(const struct job *job, const struct comm *comm)
         report_say("remove    %s", job->removals[k].name);
     if (n <= START_MOST * (int64_t)n_ranks)
         print_start(job, comm);
-    double n_mean = (double)n, n_most = (double)n;
-    for (int k = 0; k < job->n_insertions; k++) {
-        const struct inflow inflow = inflow_of(job, k);
-        n_mean += inflow.n_mean;
-        n_most += inflow.n;
-    }
     print_cost(job, n_mean, n_most, n_ranks);
     if (job->watch.motion + job->watch.overlap >= 1.0)
         report_warn("watch.motion and watch.overlap add up to 1 or more: a sphere could pass "

@@ -21,7 +21,8 @@ bool check_complete(struct job *job, int n_ranks, struct mistakes *mistakes);
 void check_recall(struct job *job, const struct job *used, bool has_state);
 
 /* `tremie check`: prints the scene, critical steps, cost estimate and warnings, after a look at
- * the contacts of the start.  Speaks on one rank.  Collective. */
-void check_print(const struct job *job, const struct comm *comm);
+ * the contacts of the start; with `advise` also which models its bodies need (run/advise.h).
+ * Speaks on one rank.  Collective. */
+void check_print(const struct job *job, const struct comm *comm, bool advise);
 
 #endif

@@ -126,7 +126,7 @@ struct limits_strike limits_strike(const struct limits_spheres *spheres, const s
     const double fall = limits_fall_speed(job), curvature = 1.0 / radius;
     const double column = mass * fall * fall / (2.0 * radius), all = spheres->mass * g;
     const double weight = all < column ? all : column; /* [N] */
-    struct limits_strike strike = {.mass = mass};
+    struct limits_strike strike = {.material = material, .radius = radius, .mass = mass};
     strike.overlap = critical_step_impact_overlap(pair, mass, curvature, spheres->speed);
     const double width = pair->linear > 0.0 ? 1.0 : sqrt(radius * strike.overlap);
     strike.force = pair->normal * width * strike.overlap;
@@ -135,6 +135,22 @@ struct limits_strike limits_strike(const struct limits_spheres *spheres, const s
         strike.pressed = contact_radius(pair, radius, radius,
                                         critical_step_rest_overlap(pair, weight, curvature));
     return strike;
+}
+
+struct limits_strike limits_hardest_strike(const struct limits_spheres *spheres,
+                                           const struct job *job,
+                                           const struct materials *materials, int wall)
+{
+    struct limits_strike hardest = {.force = 0.0};
+    for (int m = 0; m < spheres->n_materials; m++) {
+        const struct material_pair *pair = &materials->pairs[m * materials->n + wall];
+        const double radius = spheres->sizes[m].most;
+        if (!(radius > 0.0 && pair->normal > 0.0))
+            continue;
+        const struct limits_strike strike = limits_strike(spheres, job, pair, m, radius);
+        hardest = strike.force > hardest.force ? strike : hardest;
+    }
+    return hardest;
 }
 
 double limits_step(const struct limits *limits, double safety)

@@ -58,7 +58,8 @@ double limits_fall_speed(const struct job *job);
 /* One of the spheres on a wall: an impact as fast as can be foreseen, and a contact under as
  * much as may rest on it, a column of its like as high as the domain, or all spheres. */
 struct limits_strike {
-    double mass; /* [kg] */
+    int material;        /* of the sphere */
+    double radius, mass; /* [m], [kg] */
     double overlap,
         force; /* of the impact at its deepest, on a wall that does not yield [m], [N] */
     double struck, pressed; /* contact radii of the impact and of what rests; 0: nothing [m] */
@@ -66,6 +67,11 @@ struct limits_strike {
 struct limits_strike limits_strike(const struct limits_spheres *spheres, const struct job *job,
                                    const struct material_pair *pair, int material,
                                    double radius);
+/* Of all spheres the one that strikes such a wall with the greatest force; a force of 0 where
+ * nothing can. */
+struct limits_strike limits_hardest_strike(const struct limits_spheres *spheres,
+                                           const struct job *job,
+                                           const struct materials *materials, int wall);
 
 /* The step that `step: auto` takes: `safety` of the Rayleigh step, but no more than four fifths
  * of what the springs allow, rounded down to two digits [s]. */

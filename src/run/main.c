@@ -33,6 +33,7 @@ static const char USAGE[] =
     "  --out DIR                 the run's or study's folder (default: runs/ and the job's name)\n"
     "  --fresh                   start over; what is there is set aside\n"
     "  --take-over               take the folder from another process that uses it\n"
+    "  --advise                  of check: which model each body needs, and what each would cost\n"
     "  --restart FILE            start from this checkpoint\n"
     "  --wall TIME               stop with a checkpoint before this wall time is over\n"
     "  --isa NAME                pair kernel: auto, generic, v2, v3 or v4\n"

@@ -73,7 +73,8 @@ static bool read_option(struct options *options, const char *word, const char *v
         bool *given;
     } flags[] = {{"--fresh", &options->fresh},
                  {"--take-over", &options->take_over},
-                 {"--json", &options->json}};
+                 {"--json", &options->json},
+                 {"--advise", &options->advise}};
     for (size_t k = 0; k < sizeof flags / sizeof *flags; k++) {
         if (strcmp(word, flags[k].name) == 0) {
             *flags[k].given = true;
@@ -157,6 +158,10 @@ bool options_read(struct options *options, int argc, char **argv)
     options->job = options->run = object;
     if (options->fresh && options->restart != NULL) {
         report_error("--fresh and --restart exclude each other; use one of them");
+        return false;
+    }
+    if (options->advise && options->command != OPTIONS_CHECK) {
+        report_error("--advise goes with tremie check alone; leave it out");
         return false;
     }
     return true;

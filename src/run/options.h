@@ -27,7 +27,7 @@ struct options {
     int variant;         /* of the job's sweep, from 1; 0: all, or there is none */
     const char *restart; /* NULL: the newest good checkpoint */
     double wall;         /* this process's wall time [s]; 0: not limited here */
-    bool fresh, take_over, json;
+    bool fresh, take_over, json, advise;
     enum isa isa;
     int n_overrides;
     struct job_override *overrides;

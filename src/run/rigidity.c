@@ -9,29 +9,11 @@
 #include "job/job.h"
 #include "model/body.h"
 #include "model/gravity.h"
-#include "model/material.h"
 #include "run/limits.h"
 
 /* Of a square plate clamped at its edges under a load in its middle, w D / F a^2: Timoshenko
  * and Woinowsky-Krieger, Theory of Plates and Shells. */
 static const double CLAMPED = 0.00560;
-
-/* The impact with the greatest force on the body; a force of 0 where nothing can strike it. */
-static struct limits_strike hardest_strike(const struct job *job, int material,
-                                           const struct materials *materials,
-                                           const struct limits_spheres *spheres)
-{
-    struct limits_strike hardest = {.force = 0.0};
-    for (int m = 0; m < spheres->n_materials; m++) {
-        const struct material_pair *pair = &materials->pairs[m * materials->n + material];
-        const double radius = spheres->sizes[m].most;
-        if (!(radius > 0.0 && pair->normal > 0.0))
-            continue;
-        const struct limits_strike strike = limits_strike(spheres, job, pair, m, radius);
-        hardest = strike.force > hardest.force ? strike : hardest;
-    }
-    return hardest;
-}
 
 /* The body as a block of its length and volume, pressed along it [m].  (10.9) */
 static double block_yields(const struct mesh_survey *survey, double young, double force)
@@ -76,7 +58,8 @@ void rigidity_print(const struct job *job, const struct body *body,
                     const struct limits_spheres *spheres)
 {
     const struct job_material *material = &job->materials[body->material];
-    const struct limits_strike strike = hardest_strike(job, body->material, materials, spheres);
+    const struct limits_strike strike =
+        limits_hardest_strike(spheres, job, materials, body->material);
     const double weight = spheres->mass * gravity_most(job);
     const double force = weight > strike.force ? weight : strike.force;
     const double area = largest_facet(&body->mesh);

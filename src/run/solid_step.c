@@ -24,10 +24,6 @@
 #include "run/limits.h"
 #include "solid/solid_plan.h"
 
-/* Share of the critical step that the automatic step takes: elements that are pressed together
- * allow less. */
-static const double ELEMENTS_SHARE = 0.7;
-
 /* A solid, and of each of its nodes what contacts do to it. */
 struct ground {
     const struct job *job;
@@ -460,7 +456,7 @@ static double find_safe(const struct job *job, const struct bodies *bodies,
         const double share = flows ? flow_share(solid_step_flow(job, &job->bodies[b])) : 1.0;
         least = share * step < least ? share * step : least;
     }
-    return ELEMENTS_SHARE * least;
+    return SOLID_STEP_SHARE * least;
 }
 
 double solid_step_safe(const struct job *job, const struct bodies *bodies,

@@ -20,6 +20,10 @@ struct job_body;
 struct limits_spheres;
 struct materials;
 
+/* Share of such a step that the automatic step takes: elements that are pressed together allow
+ * less. */
+#define SOLID_STEP_SHARE 0.7
+
 struct solid_step {
     double step; /* stable up to this [s] */
     int element; /* of the body's mesh, that allows no more */

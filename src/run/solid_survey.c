@@ -18,6 +18,7 @@
 #include "model/solid_shape.h"
 #include "physics/critical_step.h"
 #include "run/solid_step.h"
+#include "solid/solid_plan.h"
 
 enum { PATH = 96, TEXT = 160 };
 
@@ -373,25 +374,39 @@ static const double SECONDS_A_HEXAHEDRON = 136e-9, SECONDS_A_TETRAHEDRON = 62e-9
  * 404 bytes an element, shared out to elements and nodes. */
 enum { BYTES_AN_ELEMENT = 340, BYTES_A_NODE = 370 };
 
-struct solid_survey_cost solid_survey_cost(const struct job *job)
+double solid_survey_seconds(enum solid_element_shape shape)
+{
+    return shape == SOLID_ELEMENT_HEXAHEDRON    ? SECONDS_A_HEXAHEDRON
+           : shape == SOLID_ELEMENT_TETRAHEDRON ? SECONDS_A_TETRAHEDRON
+                                                : SECONDS_A_SHEET;
+}
+
+struct solid_survey_cost solid_survey_cost_of(const struct job_body *body)
 {
     struct solid_survey_cost cost = {0.0, 0.0, 0.0};
-    for (int b = 0; b < job->n_bodies; b++) {
-        struct solid_mesh own;
-        if (!job_deforms(&job->bodies[b]))
-            continue;
-        const struct solid_mesh *mesh = solid_mesh_borrow(&job->bodies[b], &own);
-        for (int e = 0; e < mesh->n_elements; e++)
-            cost.seconds += solid_mesh_is_sheet(mesh->elements[e]) ? SECONDS_A_SHEET
-                            : solid_mesh_n_corners(mesh->elements[e]) == 8
-                                ? SECONDS_A_HEXAHEDRON
-                                : SECONDS_A_TETRAHEDRON;
-        cost.n_elements += mesh->n_elements;
-        cost.bytes +=
-            (double)mesh->n_elements * BYTES_AN_ELEMENT + (double)mesh->n_nodes * BYTES_A_NODE;
-        solid_mesh_clear(&own);
-    }
+    struct solid_mesh own;
+    if (!job_deforms(body))
+        return cost;
+    const struct solid_mesh *mesh = solid_mesh_borrow(body, &own);
+    for (int e = 0; e < mesh->n_elements; e++)
+        cost.seconds += solid_survey_seconds(solid_plan_shape(mesh, e));
+    cost.n_elements = mesh->n_elements;
+    cost.bytes =
+        (double)mesh->n_elements * BYTES_AN_ELEMENT + (double)mesh->n_nodes * BYTES_A_NODE;
+    solid_mesh_clear(&own);
     return cost;
+}
+
+struct solid_survey_cost solid_survey_cost(const struct job *job)
+{
+    struct solid_survey_cost all = {0.0, 0.0, 0.0};
+    for (int b = 0; b < job->n_bodies; b++) {
+        const struct solid_survey_cost cost = solid_survey_cost_of(&job->bodies[b]);
+        all.n_elements += cost.n_elements;
+        all.seconds += cost.seconds;
+        all.bytes += cost.bytes;
+    }
+    return all;
 }
 
 /* Limits beyond which no usual material lies: probably other units. */

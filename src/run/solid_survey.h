@@ -5,8 +5,11 @@
 #ifndef TREMIE_RUN_SOLID_SURVEY_H
 #define TREMIE_RUN_SOLID_SURVEY_H
 
+#include "physics/solid_element.h"
+
 struct bodies;
 struct job;
+struct job_body;
 struct limits_spheres;
 struct materials;
 struct mistakes;
@@ -18,13 +21,16 @@ void solid_survey_check(struct job *job, struct mistakes *mistakes);
 void solid_survey_print(const struct job *job, const struct bodies *bodies,
                         const struct materials *materials, const struct limits_spheres *spheres,
                         int b);
-/* What all solids of a job cost. */
+/* What bodies that deform cost. */
 struct solid_survey_cost {
     double n_elements;
     double seconds; /* a step, on one rank, without contacts [s] */
     double bytes;   /* of each rank, which begins with all of them */
 };
-struct solid_survey_cost solid_survey_cost(const struct job *job);
+struct solid_survey_cost solid_survey_cost(const struct job *job); /* of all together */
+struct solid_survey_cost solid_survey_cost_of(const struct job_body *body);
+/* An element's part of `seconds`. */
+double solid_survey_seconds(enum solid_element_shape shape);
 /* Warns of what is allowed and probably not meant: of its elements, its material, the step.
  * Local. */
 void solid_survey_warn(const struct job *job, const struct bodies *bodies, int b);

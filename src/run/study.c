@@ -45,7 +45,7 @@ static int run_one(const struct comm *comm, const struct options *options,
         status =
             comm_agree(comm, comm->rank == 0 ? list_variants(study, sweep) : REPORT_FINISHED);
     if (status == REPORT_FINISHED && options->command == OPTIONS_CHECK)
-        check_print(&job, comm);
+        check_print(&job, comm, options->advise);
     else if (status == REPORT_FINISHED)
         status = drive_run(comm, options, &job, text);
     report_log_close();
