@@ -100,8 +100,7 @@ struct draft {
     int n_sides;
     struct side *sides; /* those of one edge follow each other */
     int (*partner)[4];  /* of each side: another sheet's into which it goes on, * 4; -1 */
-    int *part;          /* of each sheet */
-    bool *flipped;      /* is it seen from below in its part? */
+    bool *flipped; /* is it seen from below in its part, which goes on from sheet to sheet? */
 };
 
 static int compare_sides(const void *a, const void *b)
@@ -160,74 +159,99 @@ static bool agree(const struct draft *draft, int sheet, int side, int partner)
     return own[side] == other[(partner % 4 + 1) % n];
 }
 
-/* Parts of sheets that go on into each other, all seen from one side. */
+/* Sheets that go on into each other are all seen from one side, that of the first of them. */
 static void find_parts(struct draft *draft)
 {
     int *queue = array_allocate((size_t)draft->n, sizeof *queue);
-    draft->part = array_allocate((size_t)draft->n, sizeof *draft->part);
+    bool *seen = array_allocate((size_t)draft->n, sizeof *seen);
     draft->flipped = array_allocate((size_t)draft->n, sizeof *draft->flipped);
-    memset(draft->part, -1, (size_t)draft->n * sizeof *draft->part);
     for (int first = 0; first < draft->n; first++) {
         int n = 0;
-        if (draft->part[first] >= 0)
+        if (seen[first])
             continue;
-        draft->part[first] = first;
+        seen[first] = true;
         queue[n++] = first;
         for (int k = 0; k < n; k++)
             for (int side = 0; side < 4; side++) {
                 const int partner = draft->partner[queue[k]][side];
-                if (partner < 0 || draft->part[partner / 4] >= 0)
+                if (partner < 0 || seen[partner / 4])
                     continue;
-                draft->part[partner / 4] = first;
+                seen[partner / 4] = true;
                 draft->flipped[partner / 4] =
                     draft->flipped[queue[k]] != !agree(draft, queue[k], side, partner);
                 queue[n++] = partner / 4;
             }
     }
     free(queue);
+    free(seen);
 }
 
-/* The ring of a node in a part; what is new ends the list.  `next` chains a node's rings. */
-static int ring_of(struct skin *skin, int *head, int **next, int **part, int node, int wanted)
+/* Is there no border of a part at a sheet's side?  Where one that has a single side comes round to
+ * itself, there is. */
+static bool goes_on(const struct draft *draft, int sheet, int side)
 {
-    int r = head[node];
-    while (r >= 0 && (*part)[r] != wanted)
-        r = (*next)[r];
-    if (r >= 0)
-        return r;
-    r = skin->n_rings++;
-    const int had = skin->ring_capacity;
-    ARRAY_GROW(skin->rings, skin->n_rings, skin->ring_capacity);
-    if (skin->ring_capacity > had) {
-        const size_t size = (size_t)skin->ring_capacity;
-        *next = array_resize(*next, (size_t)had, size, sizeof **next);
-        *part = array_resize(*part, (size_t)had, size, sizeof **part);
+    const int partner = draft->partner[sheet][side];
+    return partner >= 0 && (draft->flipped[partner / 4] != draft->flipped[sheet]) ==
+                               !agree(draft, sheet, side, partner);
+}
+
+static int first_of(int *same, int corner)
+{
+    while (same[corner] != corner)
+        corner = same[corner] = same[same[corner]];
+    return corner;
+}
+
+/* Corners, counted 4 * sheet + corner of its element, that have a node and a side in common at
+ * which their sheets go on. */
+static int *join_corners(const struct draft *draft)
+{
+    int *same = array_allocate(4 * (size_t)draft->n, sizeof *same);
+    for (int c = 0; c < 4 * draft->n; c++)
+        same[c] = c;
+    for (int s = 0; s < draft->n; s++) {
+        const int *own = draft->mesh->elements[draft->elements[s]];
+        const int n = solid_mesh_n_corners(own);
+        for (int side = 0; side < n; side++) {
+            if (!goes_on(draft, s, side))
+                continue;
+            const int sheet = draft->partner[s][side] / 4, begin = draft->partner[s][side] % 4;
+            const int *other = draft->mesh->elements[draft->elements[sheet]];
+            const int end = (begin + 1) % solid_mesh_n_corners(other);
+            const bool straight = other[begin] == own[side];
+            for (int k = 0; k < 2; k++) {
+                const int a = first_of(same, 4 * s + (side + k) % n);
+                const int b = first_of(same, 4 * sheet + ((k == 0) == straight ? begin : end));
+                same[a > b ? a : b] = a > b ? b : a;
+            }
+        }
     }
-    skin->rings[r] = (struct skin_ring){.node = node};
-    (*next)[r] = head[node];
-    (*part)[r] = wanted;
-    head[node] = r;
-    return r;
+    return same;
 }
 
 /* Rings of the corners of each sheet, in their order. */
 static int (*find_rings(struct skin *skin, const struct draft *draft))[4]
 {
-    const struct solid_mesh *mesh = draft->mesh;
     int(*rings)[4] = array_allocate((size_t)draft->n, sizeof *rings);
-    int *head = array_allocate((size_t)mesh->n_nodes, sizeof *head), *next = NULL, *part = NULL;
-    memset(head, -1, (size_t)mesh->n_nodes * sizeof *head);
-    for (int s = 0; s < draft->n; s++)
-        for (int k = 0; k < 4; k++) {
-            const int node = skin->sheets[s].corners[k];
-            rings[s][k] =
-                node >= 0 ? ring_of(skin, head, &next, &part, node, draft->part[s]) : -1;
-            if (node >= 0)
-                skin->rings[rings[s][k]].end++;
+    int *same = join_corners(draft);
+    int *ring = array_allocate(4 * (size_t)draft->n, sizeof *ring); /* of the first, from 1 */
+    for (int s = 0; s < draft->n; s++) {
+        const int n = skin->sheets[s].corners[3] < 0 ? 3 : 4;
+        rings[s][3] = -1;
+        for (int k = 0; k < n; k++) {
+            const int first = first_of(same, 4 * s + (draft->flipped[s] ? n - 1 - k : k));
+            if (ring[first] == 0) {
+                ARRAY_GROW(skin->rings, skin->n_rings + 1, skin->ring_capacity);
+                skin->rings[skin->n_rings] =
+                    (struct skin_ring){.node = skin->sheets[s].corners[k]};
+                ring[first] = ++skin->n_rings;
+            }
+            rings[s][k] = ring[first] - 1;
+            skin->rings[rings[s][k]].end++;
         }
-    free(head);
-    free(next);
-    free(part);
+    }
+    free(same);
+    free(ring);
     return rings;
 }
 
@@ -272,11 +296,8 @@ static void add_sheet(struct skin *skin, const struct draft *draft, int s, const
     for (int k = 0; k < n; k++) {
         /* side k of what is seen from below is another of the element itself */
         const int own = draft->flipped[s] ? (2 * n - 2 - k) % n : k;
-        const int partner = draft->partner[s][own];
         const int next = (k + 1) % n;
-        if (partner >= 0 && draft->part[partner / 4] == draft->part[s] &&
-            (draft->flipped[partner / 4] != draft->flipped[s]) ==
-                !agree(draft, s, own, partner))
+        if (goes_on(draft, s, own))
             continue;
         add_facet(skin, above[k] + 1, above[next] + 1, above[next], above[k]);
     }
@@ -318,7 +339,6 @@ static void draft_clear(struct draft *draft)
     free(draft->normals);
     free(draft->sides);
     free(draft->partner);
-    free(draft->part);
     free(draft->flipped);
 }
 
