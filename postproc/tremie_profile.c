@@ -3,8 +3,8 @@
  * sides, from a snapshot.
  *
  * Depth is that of an element's middle at the start, so an element stays in its slice while the
- * body deforms.  Means are weighted by the elements' volume at the start; elements that have
- * failed are left out.
+ * body deforms.  Means are weighted by the elements' volume at the start, of shells and
+ * membranes by their area; elements that have failed are left out.
  */
 #include <errno.h>
 #include <inttypes.h>
@@ -59,13 +59,6 @@ static void corner_place(const struct snapshot_solid *solid, int64_t e, int c, d
     memcpy(x, places[corners[e * solid->parts[SNAPSHOT_CORNERS].width + c]], 3 * sizeof *x);
 }
 
-static int n_corners(const struct snapshot_solid *solid, int64_t e)
-{
-    const int width = solid->parts[SNAPSHOT_CORNERS].width;
-    const int32_t *corners = solid->parts[SNAPSHOT_CORNERS].rows;
-    return width == 8 && corners[e * width + 4] >= 0 ? 8 : 4;
-}
-
 static double tetrahedron_volume(const struct snapshot_solid *solid, int64_t e,
                                  const int corners[4])
 {
@@ -81,6 +74,23 @@ static double tetrahedron_volume(const struct snapshot_solid *solid, int64_t e,
            6.0;
 }
 
+static double triangle_area(const struct snapshot_solid *solid, int64_t e, int b, int c)
+{
+    double x[3][3], d[2][3], sum = 0.0;
+    corner_place(solid, e, 0, x[0]);
+    corner_place(solid, e, b, x[1]);
+    corner_place(solid, e, c, x[2]);
+    for (int k = 0; k < 3; k++) {
+        d[0][k] = x[1][k] - x[0][k];
+        d[1][k] = x[2][k] - x[0][k];
+    }
+    for (int k = 0; k < 3; k++) {
+        const double part = d[0][k] * d[1][(k + 1) % 3] - d[0][(k + 1) % 3] * d[1][k];
+        sum += part * part;
+    }
+    return 0.5 * sqrt(sum);
+}
+
 /* A hexahedron is six tetrahedra about its diagonal. */
 static double volume_of(const struct snapshot_solid *solid, int64_t e)
 {
@@ -88,7 +98,10 @@ static double volume_of(const struct snapshot_solid *solid, int64_t e)
                                     {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
     static const int whole[4] = {0, 1, 2, 3};
     double volume = 0.0;
-    if (n_corners(solid, e) == 4)
+    if (snapshot_is_sheet(solid, e))
+        return triangle_area(solid, e, 1, 2) +
+               (snapshot_n_corners(solid, e) == 4 ? triangle_area(solid, e, 2, 3) : 0.0);
+    if (snapshot_n_corners(solid, e) == 4)
         return tetrahedron_volume(solid, e, whole);
     for (int t = 0; t < 6; t++)
         volume += tetrahedron_volume(solid, e, parts[t]);
@@ -137,7 +150,7 @@ static void add_element(struct profile *profile, const struct snapshot_solid *so
 static double depth_of(const struct snapshot_solid *solid, int64_t e, int side,
                        const double extent[2])
 {
-    const int n = n_corners(solid, e);
+    const int n = snapshot_n_corners(solid, e);
     double sum = 0.0, x[3];
     for (int c = 0; c < n; c++) {
         corner_place(solid, e, c, x);

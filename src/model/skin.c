@@ -186,8 +186,8 @@ static void find_parts(struct draft *draft)
     free(seen);
 }
 
-/* Is there no border of a part at a sheet's side?  Where one that has a single side comes round to
- * itself, there is. */
+/* Is there no border of a part at a sheet's side?  There is one where a part comes round to
+ * itself with its other side. */
 static bool goes_on(const struct draft *draft, int sheet, int side)
 {
     const int partner = draft->partner[sheet][side];

@@ -74,3 +74,10 @@ if command -v pvpython > pvpython && [ "${FLAVOUR:-release}" = release ]; then
 else
     echo "skip ParaView: pvpython is not installed"
 fi
+
+"$bin/tremie-info" one/snapshots/step_000000001000.h5 > said 2>&1 || why+=" tremie-info ends with status $?;"
+says "solid cloth         324 elements, 181 nodes of cloth"
+"$bin/tremie-render" one/snapshots/step_000000001000.h5 -o snapshot.png > said 2>&1 || why+=" tremie-render ends with status $?;"
+"$bin/tremie-profile" one --body cloth --from x_min --slices 2 --csv cloth.csv > said 2>&1 || why+=" tremie-profile ends with status $?;"
+awk -F, 'NR > 1 { n += $2; bad += !($3 > 0) } END { exit !(n == 324 && bad == 0) }' cloth.csv || why+=" the cloth is not stretched;"
+result "tools read them"

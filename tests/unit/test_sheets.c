@@ -1,7 +1,8 @@
 /*
- * Shells and membranes as contacts and elements find them: surfaces cut into elements that share nodes where
- * facets share sides, and skins half the thickness above and below them, closed and seen from outside whatever
- * way round elements go, also where sheets fold, meet three at an edge, or come round with their other side.
+ * Shells and membranes as contacts and elements find them: surfaces cut into elements that
+ * share nodes where facets share sides, and skins half the thickness above and below them,
+ * closed and seen from outside whatever way round elements go, also where sheets fold, meet
+ * three at an edge, or come round with their other side.
  */
 #include "check.h"
 
@@ -122,8 +123,8 @@ TEST(facets_that_share_a_side_share_its_nodes)
     struct job_body body = sheet_of(7, vertices, 2, facets, 0.3);
     struct solid_mesh mesh;
     solid_mesh_build(&mesh, &body);
-    /* the longest side of the triangle, sqrt 3, wants 6 pieces, and so have all of its sides; the quad's
-     * side that it shares, too, and the one opposite */
+    /* the longest side of the triangle, sqrt 3, wants 6 pieces, and so have all of its sides;
+     * the quad's side that it shares, too, and the one opposite */
     EXPECT(mesh.n_elements == 7 * 6 + 36 && mesh.n_nodes == 8 * 7 + 7 * 8 / 2 - 7);
     const struct sides sides = sides_of(&mesh);
     EXPECT(sides.n_free == 7 + 7 + 6 + 6 + 6 && sides.n_of_more == 0);
@@ -179,7 +180,7 @@ static int root_of(const int *parents, int k)
     return k;
 }
 
-/* Pieces of a surface that have no vertex in common; each must hold a volume that is positive. */
+/* Pieces of a surface that have no vertex in common; the volume of each must be positive. */
 static int count_parts(const struct mesh *mesh)
 {
     int *parents = malloc((size_t)mesh->n_vertices * sizeof *parents), n = 0;
@@ -270,8 +271,8 @@ static struct job_body fold_of(double angle)
 TEST(a_gentle_fold_goes_on_and_a_sharp_one_is_two_parts)
 {
     struct job_body body = fold_of(35.0);
-    /* Arms at the fold lie between both normals, so what is cut off inside is added outside; t is measured
-     * along them, so that next to the fold the sheet is thinner by the cosine of half the angle. */
+    /* Arms at the fold lie between both normals, so what is cut off inside is added outside;
+     * the thickness there is along them, less by the cosine of half the angle. */
     const double half = cos(17.5 * PI / 180.0), cell = 1.0 / 3.0;
     expect_skin(&body, 1, 0.2 - 2.0 * cell * 0.1 * 0.5 * (1.0 - half), 1e-14);
     clear(&body);
