@@ -77,7 +77,8 @@ double facet_patch_reach(const struct mesh *mesh, int face, struct vec3 centre, 
 /* Cosine of 120 degrees: faces that look so far apart are two sides of a body. */
 static const double OPPOSITE = -0.5;
 
-/* A ball that covers a face from behind has come out there if that is opposite to one before it. */
+/* A ball that covers a face from behind has come out there if it also covers one opposite to it
+ * from before. */
 static double find_through(const struct facet_patch *patch, const struct mesh *mesh,
                            struct vec3 centre, double radius)
 {

@@ -42,7 +42,7 @@ struct facet_patch_part {
 
 /* What the search finds; kept between searches so that it does not allocate. */
 struct facet_patch {
-    double depth; /* as in a half-space that takes the same volume of the ball [m] */
+    double depth;   /* as in a half-space that takes the same volume of the ball [m] */
     double through; /* how far it is in where it comes out of the body's other side: below the
                        face that holds its foot; 0: it does not come out [m] */
     int n_parts, part_capacity, n_corners, corner_capacity, n_ended, ended_capacity;

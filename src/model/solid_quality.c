@@ -195,12 +195,18 @@ static void add_element(struct solid_quality *quality, const struct solid_mesh *
     const double warp = warp_of(mesh, e);
     if (solid_mesh_is_sheet(mesh->elements[e])) {
         const double thickness = mesh->sheets[e].thickness;
+        const double width = sqrt(solid_quality_volume(mesh, e) / thickness);
+        const double thick = thickness / width;
         quality->n_quads += n == 4;
         quality->n_triangles += n == 3;
         quality->thickness_least =
             thickness < quality->thickness_least ? thickness : quality->thickness_least;
         quality->thickness_most =
             thickness > quality->thickness_most ? thickness : quality->thickness_most;
+        if (thick > quality->thick) {
+            quality->thick = thick;
+            quality->thick_worst = e;
+        }
     } else {
         quality->n_hexahedra += n == 8;
         quality->n_tetrahedra += n == 4;

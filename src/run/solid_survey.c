@@ -430,6 +430,31 @@ static void warn_of_layers(const struct job_body *body)
                     body->name, cells[2], cells[2] == 1.0 ? "" : "s", LAYERS);
 }
 
+/* Thick, thin and warped sheets. */
+static void warn_of_sheets(const struct job_body *body, const struct solid_mesh *mesh,
+                           const struct solid_quality *q)
+{
+    static const double WARP = 0.1, THICK = 1.0; /* of the width of an element */
+    static const double LIKELY[2] = {1e-5, 0.1}; /* of the body's size */
+    const double size = vec3_norm(vec3_sub(q->high, q->low));
+    char name[TEXT];
+    if (mesh->sheets == NULL)
+        return;
+    if (!(q->thickness_least >= LIKELY[0] * size && q->thickness_most <= LIKELY[1] * size))
+        report_warn(
+            "body '%s': it is %.3g to %.3g m thick and %.3g m large; is the unit of its "
+            "thickness right?",
+            body->name, q->thickness_least, q->thickness_most, size);
+    if (q->thick > THICK)
+        report_warn("body '%s': %s is %.3g times as thick as wide; where sheets meet so thick "
+                    "ones are in each other, and solids are better",
+                    body->name, element_name(mesh, q->thick_worst, name), q->thick);
+    if (q->warp > WARP)
+        report_warn("body '%s': %s is warped by %.2g of its width; below %.1f is better, or "
+                    "triangles",
+                    body->name, element_name(mesh, q->warp_worst, name), q->warp, WARP);
+}
+
 /* Springs against hourglass modes hold what ought to flow. */
 static void warn_of_flow(const struct job *job, const struct job_body *body)
 {
@@ -456,6 +481,7 @@ void solid_survey_warn(const struct job *job, int b)
     warn_of_material(job, body);
     warn_of_layers(body);
     warn_of_flow(job, body);
+    warn_of_sheets(body, mesh, &q);
     if (job->time.step > alone.step)
         report_warn("body '%s': time.step is %.3g of the critical step of %s; it would be "
                     "unstable",

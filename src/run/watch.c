@@ -20,7 +20,8 @@
 /* Share of the overlap at rest by which a place may be rounded. */
 static const double ROUNDING_BORNE = 0.01;
 /* The part of its radius that a sphere may be in a sheet whose other side it comes out of: from
- * .18 on it is pushed the less the deeper it is, and beyond its middle to the other side. (9.4) */
+ * .18 on it is pushed the less the deeper it is, and beyond its middle to the other side.
+ * (9.4) */
 static const double THROUGH = 0.5;
 /* Share of the critical step that is advised when a step is too large. */
 static const double STEP_ADVISED = 0.5;
