@@ -427,11 +427,12 @@ static void find_doubles(struct finder *finder)
     qsort(known, (size_t)mesh->n_elements, sizeof *known, compare_known);
     for (int k = 1; k < mesh->n_elements; k++)
         if (compare_nodes(&known[k - 1], &known[k]) == 0)
-            find(finder,
-                 "%s has the nodes of element %lld; each element once is expected, in one "
-                 "physical volume or in format 4.1",
+            find(finder, "%s has the nodes of element %lld; each element once is expected, %s",
                  element_name(finder, known[k].element, name),
-                 solid_quality_element_number(mesh, known[k - 1].element));
+                 solid_quality_element_number(mesh, known[k - 1].element),
+                 solid_mesh_is_sheet(mesh->elements[known[k].element])
+                     ? "and one sheet in a place"
+                     : "in one physical volume or in format 4.1");
     end_kind(finder, "elements that are there twice");
     free(known);
 }

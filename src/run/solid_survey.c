@@ -195,6 +195,21 @@ static void check_thickness(const struct survey *survey, int k)
              set->name);
 }
 
+static void check_shell(const struct survey *survey, int k)
+{
+    const struct job_shell *asked = &survey->body->solid.shells[k];
+    const struct solid_mesh_set *set = solid_mesh_find(survey->mesh, asked->set);
+    char path[PATH];
+    snprintf(path, sizeof path, "bodies.%d.shells.%d.set", survey->b, k);
+    if (set == NULL)
+        refuse_set(survey, path, asked->set, asked->place);
+    else if (set->n_sides + set->n_strays == 0)
+        FIND(survey, asked->place,
+             "%s: set '%s' has no sides on the surface that a shell could lie on; some are "
+             "expected",
+             path, set->name);
+}
+
 static void check_body(struct job *job, int b, struct mistakes *mistakes)
 {
     struct job_body *body = &job->bodies[b];
@@ -228,6 +243,8 @@ static void check_body(struct job *job, int b, struct mistakes *mistakes)
         else
             check_set(&survey, k, set);
     }
+    for (int k = 0; k < solid->n_shells; k++)
+        check_shell(&survey, k);
     for (int k = 0; k < solid->n_thicknesses; k++)
         check_thickness(&survey, k);
     for (int k = 0; k < job->output.n_probes; k++)
@@ -327,6 +344,16 @@ static void list_kinds(const struct solid_quality *q, char text[TEXT])
                                      kinds[k].n, kinds[k].name);
 }
 
+static double mass_of(const struct job *job, const struct job_body *body,
+                      const struct solid_mesh *mesh)
+{
+    double mass = 0.0;
+    for (int e = 0; e < mesh->n_elements; e++)
+        mass += solid_quality_volume(mesh, e) *
+                job->materials[solid_mesh_material(mesh, e, body->material)].density;
+    return mass;
+}
+
 void solid_survey_print(const struct job *job, const struct bodies *bodies,
                         const struct materials *materials, const struct limits_spheres *spheres,
                         int b)
@@ -343,7 +370,7 @@ void solid_survey_print(const struct job *job, const struct bodies *bodies,
                body->model == JOB_MODEL_SOLID   ? "solid"
                : body->model == JOB_MODEL_SHELL ? "shell"
                                                 : "membrane",
-               material->name, kinds, mesh->n_nodes, q.volume * material->density);
+               material->name, kinds, mesh->n_nodes, mass_of(job, body, mesh));
     report_say("          x %.4g .. %.4g, y %.4g .. %.4g, z %.4g .. %.4g m", q.low.x, q.high.x,
                q.low.y, q.high.y, q.low.z, q.high.z);
     report_say("          volume %.6g m3, surface %.4g m2 in %d sides", q.volume, q.area,

@@ -399,6 +399,65 @@ TEST(thickness_goes_over_where_it_changes)
     clear(&body);
 }
 
+/* ------------------------------------------------------------------------- sheets on solids */
+
+/* A block of 2 m x 1 m x 1 m with sheets on these sets. */
+static struct job_body block_of(int n_shells, struct job_shell *shells)
+{
+    return (struct job_body){
+        .name = (char[]){"it"},
+        .model = JOB_MODEL_SOLID,
+        .max = {2.0, 1.0, 1.0},
+        .sheet.layers = 3,
+        .solid = {
+            .kind = JOB_MESH_BOX, .cells = {4, 2, 2}, .n_shells = n_shells, .shells = shells}};
+}
+
+TEST(sheets_on_a_solid_make_it_higher_by_half_their_thickness)
+{
+    struct job_shell shells[] = {
+        {.set = (char[]){"z_max"}, .thickness = 0.1},
+        {.set = (char[]){"x_min"}, .thickness = 0.2, .model = JOB_SHELL_MEMBRANE}};
+    struct job_body body = block_of(2, shells);
+    struct solid_mesh mesh;
+    solid_mesh_build(&mesh, &body);
+    EXPECT(mesh.n_elements == 16 + 8 + 4 && mesh.n_nodes == 5 * 3 * 3);
+    EXPECT(solid_mesh_find(&mesh, "z_max")->n_elements == 8);
+    EXPECT(solid_mesh_find(&mesh, "all")->n_elements == mesh.n_elements);
+    EXPECT(mesh.sheets[15].thickness == 0.0 && mesh.sheets[16].thickness == 0.1);
+    EXPECT(mesh.sheets[27].membrane && !mesh.sheets[16].membrane);
+    solid_mesh_clear(&mesh);
+    expect_skin(&body, 1, 2.0 + 2.0 * 0.05 + 1.0 * 0.1, 1e-14);
+}
+
+TEST(sheets_all_over_a_solid)
+{
+    struct job_shell shell = {.set = (char[]){"surface"}, .thickness = 0.1};
+    struct job_body body = block_of(1, &shell);
+    struct solid_mesh mesh;
+    struct skin skin;
+    expect_skin(&body, 1, 2.0 + 10.0 * 0.05, 1e-14);
+    solid_mesh_build(&mesh, &body);
+    skin_build(&skin, &mesh);
+    EXPECT(skin.n_both == 0 && skin.n_sheets == 40); /* rims come down to edges alone */
+    EXPECT(skin.n_plain == 4 * 5 + 8 * 3 - 2 * 8);
+    skin_clear(&skin);
+    solid_mesh_clear(&mesh);
+}
+
+/* A set of sides in the middle: rims within a flat face. */
+TEST(a_sheet_on_a_part_of_a_side)
+{
+    struct job_shell shell = {.set = (char[]){"some"}, .thickness = 0.1};
+    struct job_set some = {
+        .name = (char[]){"some"},
+        .region = {.kind = JOB_REGION_BOX, .min = {0.4, -1, 0.9}, .max = {1.1, 2, 1.1}}};
+    struct job_body body = block_of(1, &shell);
+    body.solid.n_sets = 1;
+    body.solid.sets = &some;
+    expect_skin(&body, 1, 2.0 + 0.5 * 0.05, 1e-14);
+}
+
 int main(int argc, char **argv)
 {
     return check_run(argc, argv);
