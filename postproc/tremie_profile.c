@@ -61,48 +61,6 @@ static void corner_place(const struct snapshot_solid *solid, int64_t e, int c, d
     memcpy(x, places[corners[e * solid->parts[SNAPSHOT_CORNERS].width + c]], 3 * sizeof *x);
 }
 
-static int n_corners(const struct snapshot_solid *solid, int64_t e)
-{
-    const int width = solid->parts[SNAPSHOT_CORNERS].width;
-    const int32_t *corners = (const int32_t *)solid->parts[SNAPSHOT_CORNERS].rows + e * width;
-    return width == 8 && corners[4] >= 0 ? 8 : corners[3] >= 0 ? 4 : 3;
-}
-
-/* Which elements are of shells and membranes; NULL: none.  The caller frees it. */
-static bool *find_sheets(const struct snapshot_solid *solid)
-{
-    enum { QUAD = 5, HEXAHEDRON = 9 }; /* XDMF's; triangles come before, tetrahedra between */
-    const int32_t *cell = solid->parts[SNAPSHOT_CELLS].rows;
-    bool *sheets =
-        solid->mixed ? array_allocate((size_t)solid->n_elements, sizeof *sheets) : NULL;
-    for (int64_t e = 0; solid->mixed && e < solid->n_elements; e++) {
-        sheets[e] = *cell <= QUAD;
-        cell += 1 + (*cell == HEXAHEDRON ? 8 : n_corners(solid, e));
-    }
-    return sheets;
-}
-
-/* Twice the area of the triangle of three corners. */
-static double twice_area(const struct snapshot_solid *solid, int64_t e, int a, int b, int c)
-{
-    double x[3][3], n[3];
-    corner_place(solid, e, a, x[0]);
-    corner_place(solid, e, b, x[1]);
-    corner_place(solid, e, c, x[2]);
-    for (int k = 0; k < 3; k++) {
-        const int p = (k + 1) % 3, q = (k + 2) % 3;
-        n[k] = (x[1][p] - x[0][p]) * (x[2][q] - x[0][q]) -
-               (x[1][q] - x[0][q]) * (x[2][p] - x[0][p]);
-    }
-    return sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-}
-
-static double area_of(const struct snapshot_solid *solid, int64_t e)
-{
-    return 0.5 * (twice_area(solid, e, 0, 1, 2) +
-                  (n_corners(solid, e) == 4 ? twice_area(solid, e, 0, 2, 3) : 0.0));
-}
-
 static double tetrahedron_volume(const struct snapshot_solid *solid, int64_t e,
                                  const int corners[4])
 {
@@ -118,6 +76,23 @@ static double tetrahedron_volume(const struct snapshot_solid *solid, int64_t e,
            6.0;
 }
 
+static double triangle_area(const struct snapshot_solid *solid, int64_t e, int b, int c)
+{
+    double x[3][3], d[2][3], sum = 0.0;
+    corner_place(solid, e, 0, x[0]);
+    corner_place(solid, e, b, x[1]);
+    corner_place(solid, e, c, x[2]);
+    for (int k = 0; k < 3; k++) {
+        d[0][k] = x[1][k] - x[0][k];
+        d[1][k] = x[2][k] - x[0][k];
+    }
+    for (int k = 0; k < 3; k++) {
+        const double part = d[0][k] * d[1][(k + 1) % 3] - d[0][(k + 1) % 3] * d[1][k];
+        sum += part * part;
+    }
+    return 0.5 * sqrt(sum);
+}
+
 /* A hexahedron is six tetrahedra about its diagonal. */
 static double volume_of(const struct snapshot_solid *solid, int64_t e)
 {
@@ -125,7 +100,10 @@ static double volume_of(const struct snapshot_solid *solid, int64_t e)
                                     {0, 7, 4, 6}, {0, 4, 5, 6}, {0, 5, 1, 6}};
     static const int whole[4] = {0, 1, 2, 3};
     double volume = 0.0;
-    if (n_corners(solid, e) == 4)
+    if (snapshot_is_sheet(solid, e))
+        return triangle_area(solid, e, 1, 2) +
+               (snapshot_n_corners(solid, e) == 4 ? triangle_area(solid, e, 2, 3) : 0.0);
+    if (snapshot_n_corners(solid, e) == 4)
         return tetrahedron_volume(solid, e, whole);
     for (int t = 0; t < 6; t++)
         volume += tetrahedron_volume(solid, e, parts[t]);
@@ -157,7 +135,7 @@ static bool is_alive(const struct snapshot_solid *solid, int64_t e)
 static double pressure_on(const struct snapshot_solid *solid, int64_t e)
 {
     const int column = snapshot_column(&solid->nodes, "contact_pressure");
-    const int width = solid->parts[SNAPSHOT_CORNERS].width, n = n_corners(solid, e);
+    const int width = solid->parts[SNAPSHOT_CORNERS].width, n = snapshot_n_corners(solid, e);
     const int32_t *corners = (const int32_t *)solid->parts[SNAPSHOT_CORNERS].rows + e * width;
     double sum = 0.0;
     for (int c = 0; c < n; c++) {
@@ -169,9 +147,9 @@ static double pressure_on(const struct snapshot_solid *solid, int64_t e)
 }
 
 static void add_element(struct profile *profile, const struct snapshot_solid *solid, int64_t e,
-                        bool is_sheet, int slice)
+                        int slice)
 {
-    const double volume = is_sheet ? area_of(solid, e) : volume_of(solid, e);
+    const double volume = volume_of(solid, e);
     profile->volume[slice] += volume;
     profile->count[slice] += 1.0;
     for (int v = 0; v < N_VALUES; v++) {
@@ -179,7 +157,8 @@ static void add_element(struct profile *profile, const struct snapshot_solid *so
         if (profile->values[v] == NULL)
             continue;
         if (v == PRESSURE) {
-            profile->values[v][slice] += is_sheet ? volume * pressure_on(solid, e) : 0.0;
+            profile->values[v][slice] +=
+                snapshot_is_sheet(solid, e) ? volume * pressure_on(solid, e) : 0.0;
             continue;
         }
         snapshot_get(&solid->elements, e, snapshot_column(&solid->elements, VALUES[v].name),
@@ -193,7 +172,7 @@ static void add_element(struct profile *profile, const struct snapshot_solid *so
 static double depth_of(const struct snapshot_solid *solid, int64_t e, int side,
                        const double extent[2])
 {
-    const int n = n_corners(solid, e);
+    const int n = snapshot_n_corners(solid, e);
     double sum = 0.0, x[3];
     for (int c = 0; c < n; c++) {
         corner_place(solid, e, c, x);
@@ -240,18 +219,18 @@ static void add_snapshot(struct profile *profile, const struct snapshot_solid *s
                          int n)
 {
     double extent[2];
-    bool *sheets = find_sheets(solid);
+    bool has_sheets = false;
     find_extent(solid, side / 2, extent);
     const double width = (extent[1] - extent[0]) / n;
+    for (int64_t e = 0; e < solid->n_elements; e++)
+        has_sheets = has_sheets || snapshot_is_sheet(solid, e);
     if (profile->n_snapshots++ == 0)
-        begin_profile(profile, solid, sheets != NULL, width, n);
+        begin_profile(profile, solid, has_sheets, width, n);
     for (int64_t e = 0; e < solid->n_elements; e++) {
         const int slice = (int)(depth_of(solid, e, side, extent) / width);
         if (is_alive(solid, e))
-            add_element(profile, solid, e, sheets != NULL && sheets[e],
-                        slice < n ? slice : n - 1);
+            add_element(profile, solid, e, slice < n ? slice : n - 1);
     }
-    free(sheets);
 }
 
 static void clear_profile(struct profile *profile)

@@ -795,6 +795,8 @@ static void gather_parts(const struct step *step, const struct group *place, str
     struct facet_contact *group = &step->facets->list[place->begin];
     facet_patch_search(patch, group, &step->facets->work->near[place->begin], place->n_near,
                        &step->bodies->list[group->body], centre, radius);
+    if (patch->through > step->facets->through_max * radius)
+        step->facets->through_max = patch->through / radius;
     for (int p = 0; p < patch->n_parts; p++)
         add_part(step, place->begin, &patch->parts[p]);
     for (int e = 0; e < patch->n_ended; e++)
@@ -884,6 +886,7 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
     if (!work->has_groups)
         list_groups(facets, spheres, bodies);
     count_travel(&step);
+    facets->through_max = 0.0;
     for (int r = 0; r < work->n_runs; r++)
         apply_run(&step, &work->runs[r]);
     for (int g = 0; g < work->n_groups; g++) {
@@ -899,8 +902,28 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
             gather_group(&step, group);
     }
     empty_batch(&step);
-    facets->overlap_max = kernel_work.overlap_max;
+    facets->overlap_max = kernel_work.overlap_max > facets->through_max
+                              ? kernel_work.overlap_max
+                              : facets->through_max;
     merge_all_loads(facets);
+}
+
+double facet_contacts_reach(const struct facet_contacts *facets, const struct spheres *spheres,
+                            const struct bodies *bodies, int entry)
+{
+    const struct facet_contact *list = facets->list, *own = &list[entry];
+    const struct vec3 centre = sphere_place(spheres, own->sphere);
+    const double radius = sphere_radius(spheres, own->sphere);
+    double most = 0.0;
+    int k = entry;
+    while (k > 0 && list[k - 1].sphere == own->sphere && list[k - 1].body == own->body)
+        k--;
+    for (; k < facets->n && list[k].sphere == own->sphere && list[k].body == own->body; k++) {
+        const double reach =
+            facet_patch_reach(&bodies->list[own->body].mesh, list[k].feature, centre, radius);
+        most = reach > most ? reach : most;
+    }
+    return most;
 }
 
 /* What the contact across a surface that goes stores half a step before: that is what is lost

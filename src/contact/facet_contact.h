@@ -77,6 +77,7 @@ struct facet_contacts {
     struct body_load *loads;    /* one a body */
     int n_bodies;
     double overlap_max;      /* largest overlap/radius of the last step */
+    double through_max;      /* of those that come out of a thin body's other side, likewise */
     struct facet_work *work; /* search trees and scratch, private to facet_contact.c */
 };
 
@@ -123,6 +124,11 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
 void facet_contacts_held(const struct facet_contacts *facets, const struct spheres *spheres,
                          const struct bodies *bodies, const struct materials *materials,
                          double dt, struct exact_sum *sum);
+
+/* How far the sphere of an entry is in the entry's body, one that deforms, below any face that
+ * holds its foot [m].  Local. */
+double facet_contacts_reach(const struct facet_contacts *facets, const struct spheres *spheres,
+                            const struct bodies *bodies, int entry);
 
 /* Elastic energy stored in facet contacts (each once, by the sphere's owner), as of the last
  * facet_contacts_apply(): that of normal springs is added to `normal`, that of springs with a

@@ -63,6 +63,39 @@ static double cut_faces(struct facet_patch *patch, const struct facet_contact *g
     return volume;
 }
 
+double facet_patch_reach(const struct mesh *mesh, int face, struct vec3 centre, double radius)
+{
+    const struct mesh_border *border = mesh->face_borders[face];
+    const double height = vec3_dot(vec3_sub(centre, border[0].from), mesh->face_normal[face]);
+    if (!(height > 0.0 && height < radius))
+        return 0.0;
+    for (int k = 0; k < 3; k++)
+        if (vec3_dot(vec3_sub(centre, border[k].from), border[k].inward) < 0.0)
+            return 0.0;
+    return radius - height;
+}
+
+/* Cosine of 120 degrees: faces that look so far apart are two sides of a body. */
+static const double OPPOSITE = -0.5;
+
+/* A ball that covers a face from behind has come out there if it also covers one opposite to it
+ * from before. */
+static double find_through(const struct facet_patch *patch, const struct mesh *mesh,
+                           struct vec3 centre, double radius)
+{
+    double most = 0.0;
+    for (int b = 0; b < patch->n_cuts; b++) {
+        const struct vec3 behind = mesh->face_normal[patch->cuts[b].face];
+        for (int c = 0; patch->cuts[b].at.volume < 0.0 && c < patch->n_cuts; c++) {
+            const int face = patch->cuts[c].face;
+            const double reach = facet_patch_reach(mesh, face, centre, radius);
+            if (reach > most && vec3_dot(behind, mesh->face_normal[face]) < OPPOSITE)
+                most = reach;
+        }
+    }
+    return most;
+}
+
 static void add_corner(struct facet_patch *patch, const struct facet_patch_part *part,
                        int corner, double weight, struct vec3 normal)
 {
@@ -173,6 +206,7 @@ void facet_patch_search(struct facet_patch *patch, struct facet_contact *group, 
                         int n, const struct body *body, struct vec3 centre, double radius)
 {
     const double volume = cut_faces(patch, group, near, n, body, centre, radius);
+    patch->through = find_through(patch, &body->mesh, centre, radius);
     if (!take_circle(patch, &body->mesh, radius))
         take_cuts(patch, body, volume, radius);
     hand_over(patch, group, near, n, body->skin);

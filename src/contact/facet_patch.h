@@ -42,7 +42,9 @@ struct facet_patch_part {
 
 /* What the search finds; kept between searches so that it does not allocate. */
 struct facet_patch {
-    double depth; /* as in a half-space that takes the same volume of the ball [m] */
+    double depth;   /* as in a half-space that takes the same volume of the ball [m] */
+    double through; /* how far it is in where it comes out of the body's other side: below the
+                       face that holds its foot; 0: it does not come out [m] */
     int n_parts, part_capacity, n_corners, corner_capacity, n_ended, ended_capacity;
     struct facet_patch_part *parts;
     struct facet_patch_corner *corners;
@@ -58,6 +60,8 @@ void facet_patch_clear(struct facet_patch *patch);
  * Local. */
 void facet_patch_search(struct facet_patch *patch, struct facet_contact *group, const int *near,
                         int n, const struct body *body, struct vec3 centre, double radius);
+/* How far a ball is in before a face that holds its foot; 0: it does not, or is behind [m]. */
+double facet_patch_reach(const struct mesh *mesh, int face, struct vec3 centre, double radius);
 /* One part that is a whole face, its corners with equal weights. */
 void facet_patch_whole(struct facet_patch *patch, const struct body *body, int face);
 

@@ -275,8 +275,13 @@ static void materials_prune(struct job *job, const bool *used)
     job->n_pairs = n_pairs;
     for (int i = 0; i < job->n_spheres; i++)
         job->spheres[i].material = index[job->spheres[i].material];
-    for (int i = 0; i < job->n_bodies; i++)
-        job->bodies[i].material = index[job->bodies[i].material];
+    for (int i = 0; i < job->n_bodies; i++) {
+        struct job_body *body = &job->bodies[i];
+        body->material = index[body->material];
+        for (int k = 0; k < body->solid.n_shells; k++)
+            if (body->solid.shells[k].has_material)
+                body->solid.shells[k].material = index[body->solid.shells[k].material];
+    }
     for (int i = 0; i < job->n_insertions; i++) {
         struct job_insertion *insertion = &job->insertions[i];
         insertion->material = insertion->n_mix > 0 ? 0 : index[insertion->material];
@@ -435,6 +440,9 @@ static void places_note(struct job *job, const struct yaml_tree_node *root)
         snprintf(list, sizeof list, "bodies.%d.boundary", i);
         for (int k = 0; k < body->solid.n_boundary; k++)
             body->solid.boundary[k].place = place_of(job->path, root, list, k);
+        snprintf(list, sizeof list, "bodies.%d.shells", i);
+        for (int k = 0; k < body->solid.n_shells; k++)
+            body->solid.shells[k].place = place_of(job->path, root, list, k);
         snprintf(list, sizeof list, "bodies.%d.thicknesses", i);
         for (int k = 0; k < body->solid.n_thicknesses; k++)
             body->solid.thicknesses[k].place = place_of(job->path, root, list, k);

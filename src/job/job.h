@@ -269,6 +269,16 @@ struct job_thickness {
     struct job_place place;
 };
 
+/* Shells or membranes on a set of a solid. */
+struct job_shell {
+    char *set;
+    double thickness; /* [m] */
+    enum { JOB_SHELL_BENDS, JOB_SHELL_MEMBRANE } model;
+    bool has_material; /* else the body's */
+    int material;
+    struct job_place place;
+};
+
 /* What is prescribed on a set of a body that deforms; one of these (model/solid_condition). */
 struct job_boundary {
     char *set;
@@ -328,9 +338,10 @@ struct job_solid {
         enum job_touches what;
         double stiffness; /* of a node's spring, over what it is made of [-] */
     } touches;
-    int n_sets, n_boundary, n_thicknesses;
+    int n_sets, n_boundary, n_thicknesses, n_shells;
     struct job_set *sets;
     struct job_thickness *thicknesses; /* of parts of shells and membranes */
+    struct job_shell *shells;          /* of a solid */
     struct job_boundary *boundary;
     struct job_volume volume; /* Gmsh, once it has been read */
     struct solid_mesh *mesh;  /* kept by model/solid_mesh, which frees it; not a key */
@@ -349,7 +360,7 @@ struct job_body {
     struct {              /* shell, membrane */
         double thickness; /* [m]; of a rigid body for advice alone, 0: not given */
         double cell;      /* wanted width of an element [m]; 0: a facet is one */
-        int layers;       /* points through the thickness of a shell */
+        int layers;       /* points through the thickness of a shell; of a solid's too */
     } sheet;
     struct job_place place;
     enum job_geometry geometry;
@@ -393,6 +404,15 @@ struct job_body {
     bool comes_and_goes;
     double active[2]; /* then: when it comes and when it goes [s] */
 };
+
+/* Has it nodes that turn? */
+static inline bool job_turns(const struct job_body *body)
+{
+    bool turns = body->model == JOB_MODEL_SHELL;
+    for (int k = 0; k < body->solid.n_shells; k++)
+        turns = turns || body->solid.shells[k].model == JOB_SHELL_BENDS;
+    return turns;
+}
 
 /* Is it made of finite elements? */
 static inline bool job_deforms(const struct job_body *body)

@@ -776,7 +776,7 @@ static void table_check(const struct check *check, const char *item, const char 
 }
 
 /* One item of the boundary of a body that deforms. */
-static void condition_check(const struct check *check, const char *item, enum job_model model,
+static void condition_check(const struct check *check, const char *item, bool turns,
                             const struct job_boundary *asked)
 {
     char path[160];
@@ -796,7 +796,7 @@ static void condition_check(const struct check *check, const char *item, enum jo
                 "force alone",
                 moved == 1 ? "no direction" : "a direction that says nothing");
     PATH("%s.fixed_turns", item);
-    if (asked->fixed_turns != 0 && model != JOB_MODEL_SHELL)
+    if (asked->fixed_turns != 0 && !turns)
         mistake(check, path, "holds what does not turn; nodes of a shell are expected");
     PATH("%s.motion", item);
     motions_check(check, asked->n_motions, asked->motions, path);
@@ -871,7 +871,7 @@ static void parts_check(const struct check *check, const struct job_body *body, 
     }
     for (int k = 0; k < solid->n_boundary; k++) {
         PATH("bodies.%d.boundary.%d", i, k);
-        condition_check(check, path, body->model, &solid->boundary[k]);
+        condition_check(check, path, job_turns(body), &solid->boundary[k]);
     }
 }
 
@@ -919,6 +919,10 @@ static void bodies_check(const struct check *check, bool read_files, bool *stand
         if (!is_clean(check, path) || !is_material(check, job->bodies[i].material))
             continue;
         standing[body->material] = true;
+        for (int k = 0; k < body->solid.n_shells; k++)
+            if (body->solid.shells[k].has_material &&
+                is_material(check, body->solid.shells[k].material))
+                check->used[body->solid.shells[k].material] = true;
         if (body->model == JOB_MODEL_SOLID)
             solid_shape_check(check, body, i, read_files);
         else

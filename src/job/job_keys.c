@@ -42,6 +42,7 @@ static const char *const laws[] = {"hertz-mindlin", "linear", NULL};
 static const char *const pair_laws[] = {"hertz-mindlin", "linear", "default", NULL};
 static const char *const rollings[] = {"spring", "constant", NULL};
 static const char *const models[] = {"rigid", "solid", "shell", "membrane", NULL};
+static const char *const shell_models[] = {"shell", "membrane", NULL};
 static const char *const mesh_kinds[] = {"box", "plate", "cylinder", "tube", "gmsh", NULL};
 static const char *const elements[] = {"hexahedra", "tetrahedra", NULL};
 static const char *const hourglasses[] = {"stiffness", "viscous", NULL};
@@ -809,6 +810,20 @@ static const struct schema_key thickness_keys[] = {
      ABOVE_TO(0.0, FAR), AT(struct job_thickness, thickness)},
     END};
 
+static const struct schema_key shell_keys[] = {
+    {"set", SCHEMA_TEXT,
+     "name of a set of the body: its sides; of a Gmsh file also facets of its surfaces that are "
+     "no sides of elements, with their nodes",
+     .required = true, AT(struct job_shell, set)},
+    {"thickness", SCHEMA_NUMBER, "how thick they are, half of it on each side of the nodes",
+     .unit = "m", .required = true, ABOVE_TO(0.0, FAR), AT(struct job_shell, thickness)},
+    {"model", SCHEMA_CHOICE, "whether they resist bending", .standard = "shell",
+     .choices = shell_models, AT(struct job_shell, model)},
+    {"material", SCHEMA_REFERENCE,
+     "what they are made of, the body's when left out; contacts are those of the body's",
+     GIVEN(struct job_shell, has_material), AT(struct job_shell, material)},
+    END};
+
 #define RIGID   KIND(JOB_MODEL_RIGID)
 #define SOLID   KIND(JOB_MODEL_SOLID)
 #define SHELL   KIND(JOB_MODEL_SHELL)
@@ -843,9 +858,15 @@ static const struct schema_key body_keys[] = {
     {"layers", SCHEMA_INT,
      "points through the thickness at which it is found whether it flows; 2 are exact while it "
      "does not",
-     .standard = "3", BETWEEN(1.0, 5.0), .kinds = SHELL, AT(struct job_body, sheet.layers)},
+     .standard = "3", BETWEEN(1.0, 5.0), .kinds = SHELL | SOLID,
+     AT(struct job_body, sheet.layers)},
     {"mesh", SCHEMA_GROUP, "its elements", .required = true, .kinds = SOLID,
      .inside = solid_mesh_keys},
+    {"shells", SCHEMA_LIST,
+     "shells and membranes that share nodes with it, as a liner on its surface does",
+     UP_TO(1000.0), .kinds = SOLID, .inside = shell_keys,
+     GIVEN(struct job_body, solid.n_shells),
+     LIST_AT(struct job_body, solid.shells, solid.n_shells)},
     {"sets", SCHEMA_LIST, "parts of it besides those that its mesh has", UP_TO(1000.0),
      .kinds = DEFORMS, .inside = set_keys, GIVEN(struct job_body, solid.n_sets),
      LIST_AT(struct job_body, solid.sets, solid.n_sets)},
@@ -857,8 +878,9 @@ static const struct schema_key body_keys[] = {
      AT(struct job_body, solid.velocity)},
     {"damping", SCHEMA_GROUP, "Rayleigh's damping", .kinds = DEFORMS,
      .inside = solid_damping_keys},
-    {"hourglass", SCHEMA_GROUP, "hourglass control of hexahedra and quads", .kinds = DEFORMS,
-     .inside = hourglass_keys},
+    {"hourglass", SCHEMA_GROUP,
+     "hourglass control of hexahedra and quads; what holds quads are springs in any case",
+     .kinds = DEFORMS, .inside = hourglass_keys},
     {"touches", SCHEMA_GROUP, "what its nodes touch; its faces touch whatever touches them",
      .kinds = SOLID, .inside = touches_keys},
     {"motion", SCHEMA_LIST,

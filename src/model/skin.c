@@ -45,43 +45,21 @@ void skin_place(const struct skin *skin, const struct vec3 *nodes, struct vec3 *
         vertices[v] = nodes[skin->nodes[v]];
     for (int r = 0; r < skin->n_rings; r++) {
         const struct vec3 arm = skin_arm(skin, r, normals), at = nodes[skin->rings[r].node];
-        vertices[skin->n_plain + 2 * r] = vec3_add(at, arm);
-        vertices[skin->n_plain + 2 * r + 1] = vec3_sub(at, arm);
+        vertices[skin_above(skin, r)] = vec3_add(at, arm);
+        if (r < skin->n_both)
+            vertices[skin_above(skin, r) + 1] = vec3_sub(at, arm);
     }
     free(normals);
 }
 
-/* ---------------------------------------------------------------------------------- solids */
-
-static int count_facets(const struct solid_mesh *mesh, int n_sides)
+static int count_facets(const struct solid_mesh *mesh, const int *partners)
 {
-    int n = n_sides;
+    int n = 0;
+    for (int k = 0; k < SOLID_MESH_SIDES * mesh->n_elements; k++)
+        n += partners[k] == SOLID_MESH_OUTSIDE;
     for (int e = 0; e < mesh->n_elements; e++)
         n += solid_mesh_is_sheet(mesh->elements[e]) ? 7 : 0; /* more: two a side, four rims */
     return n;
-}
-
-static void add_solids(struct skin *skin, const struct solid_mesh *mesh, int n,
-                       const struct solid_mesh_side *sides)
-{
-    int *vertex = array_allocate((size_t)mesh->n_nodes, sizeof *vertex); /* 0: none, else + 1 */
-    for (int k = 0; k < n; k++) {
-        const int *element = mesh->elements[sides[k].element];
-        if (solid_mesh_is_sheet(element))
-            continue;
-        int *facet = skin->facets[skin->n_facets++];
-        const int n_corners = solid_mesh_side_nodes(element, sides[k].side, facet);
-        for (int c = 0; c < n_corners; c++) {
-            const int node = facet[c];
-            if (vertex[node] == 0) {
-                skin->nodes[skin->n_vertices] = node;
-                vertex[node] = ++skin->n_vertices;
-            }
-            facet[c] = vertex[node] - 1;
-        }
-    }
-    skin->n_plain = skin->n_vertices;
-    free(vertex);
 }
 
 /* ---------------------------------------------------------------------------------- sheets */
@@ -100,8 +78,8 @@ struct draft {
     int n_sides;
     struct side *sides; /* those of one edge follow each other */
     int (*partner)[4];  /* of each side: another sheet's into which it goes on, * 4; -1 */
-    int *part;          /* of each sheet */
-    bool *flipped;      /* is it seen from below in its part? */
+    int *on;            /* the side of a solid that each lies on, or -1 */
+    bool *flipped; /* is it seen from below in its part, which goes on from sheet to sheet? */
 };
 
 static int compare_sides(const void *a, const void *b)
@@ -144,7 +122,8 @@ static void find_partners(struct draft *draft)
         if (end - k != 2)
             continue;
         const double cosine = vec3_dot(draft->normals[p->sheet], draft->normals[q->sheet]);
-        if ((p->turned != q->turned ? cosine : -cosine) < SKIN_SMOOTH)
+        if ((p->turned != q->turned ? cosine : -cosine) < SKIN_SMOOTH ||
+            (draft->on[p->sheet] < 0) != (draft->on[q->sheet] < 0))
             continue;
         draft->partner[p->sheet][p->side] = 4 * q->sheet + q->side;
         draft->partner[q->sheet][q->side] = 4 * p->sheet + p->side;
@@ -160,74 +139,102 @@ static bool agree(const struct draft *draft, int sheet, int side, int partner)
     return own[side] == other[(partner % 4 + 1) % n];
 }
 
-/* Parts of sheets that go on into each other, all seen from one side. */
+/* Sheets that go on into each other are all seen from one side, that of the first of them. */
 static void find_parts(struct draft *draft)
 {
     int *queue = array_allocate((size_t)draft->n, sizeof *queue);
-    draft->part = array_allocate((size_t)draft->n, sizeof *draft->part);
+    bool *seen = array_allocate((size_t)draft->n, sizeof *seen);
     draft->flipped = array_allocate((size_t)draft->n, sizeof *draft->flipped);
-    memset(draft->part, -1, (size_t)draft->n * sizeof *draft->part);
     for (int first = 0; first < draft->n; first++) {
         int n = 0;
-        if (draft->part[first] >= 0)
+        if (seen[first])
             continue;
-        draft->part[first] = first;
+        seen[first] = true;
         queue[n++] = first;
         for (int k = 0; k < n; k++)
             for (int side = 0; side < 4; side++) {
                 const int partner = draft->partner[queue[k]][side];
-                if (partner < 0 || draft->part[partner / 4] >= 0)
+                if (partner < 0 || seen[partner / 4])
                     continue;
-                draft->part[partner / 4] = first;
+                seen[partner / 4] = true;
                 draft->flipped[partner / 4] =
                     draft->flipped[queue[k]] != !agree(draft, queue[k], side, partner);
                 queue[n++] = partner / 4;
             }
     }
     free(queue);
+    free(seen);
 }
 
-/* The ring of a node in a part; what is new ends the list.  `next` chains a node's rings. */
-static int ring_of(struct skin *skin, int *head, int **next, int **part, int node, int wanted)
+/* Is there no border of a part at a sheet's side?  There is one where a part comes round to
+ * itself with its other side. */
+static bool goes_on(const struct draft *draft, int sheet, int side)
 {
-    int r = head[node];
-    while (r >= 0 && (*part)[r] != wanted)
-        r = (*next)[r];
-    if (r >= 0)
-        return r;
-    r = skin->n_rings++;
-    const int had = skin->ring_capacity;
-    ARRAY_GROW(skin->rings, skin->n_rings, skin->ring_capacity);
-    if (skin->ring_capacity > had) {
-        const size_t size = (size_t)skin->ring_capacity;
-        *next = array_resize(*next, (size_t)had, size, sizeof **next);
-        *part = array_resize(*part, (size_t)had, size, sizeof **part);
+    const int partner = draft->partner[sheet][side];
+    return partner >= 0 && (draft->flipped[partner / 4] != draft->flipped[sheet]) ==
+                               !agree(draft, sheet, side, partner);
+}
+
+static int first_of(int *same, int corner)
+{
+    while (same[corner] != corner)
+        corner = same[corner] = same[same[corner]];
+    return corner;
+}
+
+/* Corners, counted 4 * sheet + corner of its element, that have a node and a side in common at
+ * which their sheets go on. */
+static int *join_corners(const struct draft *draft)
+{
+    int *same = array_allocate(4 * (size_t)draft->n, sizeof *same);
+    for (int c = 0; c < 4 * draft->n; c++)
+        same[c] = c;
+    for (int s = 0; s < draft->n; s++) {
+        const int *own = draft->mesh->elements[draft->elements[s]];
+        const int n = solid_mesh_n_corners(own);
+        for (int side = 0; side < n; side++) {
+            if (!goes_on(draft, s, side))
+                continue;
+            const int sheet = draft->partner[s][side] / 4, begin = draft->partner[s][side] % 4;
+            const int *other = draft->mesh->elements[draft->elements[sheet]];
+            const int end = (begin + 1) % solid_mesh_n_corners(other);
+            const bool straight = other[begin] == own[side];
+            for (int k = 0; k < 2; k++) {
+                const int a = first_of(same, 4 * s + (side + k) % n);
+                const int b = first_of(same, 4 * sheet + ((k == 0) == straight ? begin : end));
+                same[a > b ? a : b] = a > b ? b : a;
+            }
+        }
     }
-    skin->rings[r] = (struct skin_ring){.node = node};
-    (*next)[r] = head[node];
-    (*part)[r] = wanted;
-    head[node] = r;
-    return r;
+    return same;
 }
 
 /* Rings of the corners of each sheet, in their order. */
 static int (*find_rings(struct skin *skin, const struct draft *draft))[4]
 {
-    const struct solid_mesh *mesh = draft->mesh;
     int(*rings)[4] = array_allocate((size_t)draft->n, sizeof *rings);
-    int *head = array_allocate((size_t)mesh->n_nodes, sizeof *head), *next = NULL, *part = NULL;
-    memset(head, -1, (size_t)mesh->n_nodes * sizeof *head);
-    for (int s = 0; s < draft->n; s++)
-        for (int k = 0; k < 4; k++) {
-            const int node = skin->sheets[s].corners[k];
-            rings[s][k] =
-                node >= 0 ? ring_of(skin, head, &next, &part, node, draft->part[s]) : -1;
-            if (node >= 0)
-                skin->rings[rings[s][k]].end++;
+    int *same = join_corners(draft);
+    int *ring = array_allocate(4 * (size_t)draft->n, sizeof *ring); /* of the first, from 1 */
+    for (int pass = 0; pass < 2 * draft->n; pass++) {               /* those on solids last */
+        const int s = pass % draft->n, n = skin->sheets[s].corners[3] < 0 ? 3 : 4;
+        if ((draft->on[s] < 0) != (pass < draft->n))
+            continue;
+        rings[s][3] = -1;
+        for (int k = 0; k < n; k++) {
+            const int first = first_of(same, 4 * s + (draft->flipped[s] ? n - 1 - k : k));
+            if (ring[first] == 0) {
+                ARRAY_GROW(skin->rings, skin->n_rings + 1, skin->ring_capacity);
+                skin->rings[skin->n_rings] =
+                    (struct skin_ring){.node = skin->sheets[s].corners[k]};
+                ring[first] = ++skin->n_rings;
+            }
+            rings[s][k] = ring[first] - 1;
+            skin->rings[rings[s][k]].end++;
         }
-    free(head);
-    free(next);
-    free(part);
+        skin->n_both = draft->on[s] < 0 ? skin->n_rings : skin->n_both;
+    }
+    free(same);
+    free(ring);
     return rings;
 }
 
@@ -257,27 +264,39 @@ static void add_facet(struct skin *skin, int a, int b, int c, int d)
     memcpy(skin->facets[skin->n_facets++], facet, sizeof facet);
 }
 
+/* Vertices below the sheet's corners: those of a solid's nodes where it lies on one. */
+static void find_below(const struct skin *skin, const struct draft *draft, int s,
+                       const int rings[4], const int *plain, int below[4])
+{
+    for (int k = 0; k < 4 && rings[k] >= 0; k++)
+        below[k] = draft->on[s] < 0 ? skin_above(skin, rings[k]) + 1
+                                    : plain[skin->sheets[s].corners[k]] - 1;
+}
+
+/* Side k of what may be seen from below is another of the element itself. */
+static int own_side(const struct draft *draft, int s, int n, int k)
+{
+    return draft->flipped[s] ? (2 * n - 2 - k) % n : k;
+}
+
 /* Above, below, and at what is no border of a part. */
-static void add_sheet(struct skin *skin, const struct draft *draft, int s, const int rings[4])
+static void add_sheet(struct skin *skin, const struct draft *draft, int s, const int rings[4],
+                      const int *plain)
 {
     const int n = rings[3] >= 0 ? 4 : 3;
-    int above[4];
+    int above[4], below[4];
     for (int k = 0; k < n; k++)
-        above[k] = skin->n_plain + 2 * rings[k];
+        above[k] = skin_above(skin, rings[k]);
+    find_below(skin, draft, s, rings, plain, below);
     for (int k = 2; k < n; k++) { /* triangles: cheaper than four about a mean point */
         add_facet(skin, above[0], above[k - 1], above[k], -1);
-        add_facet(skin, above[k] + 1, above[k - 1] + 1, above[0] + 1, -1);
+        if (draft->on[s] < 0)
+            add_facet(skin, below[k], below[k - 1], below[0], -1);
     }
     for (int k = 0; k < n; k++) {
-        /* side k of what is seen from below is another of the element itself */
-        const int own = draft->flipped[s] ? (2 * n - 2 - k) % n : k;
-        const int partner = draft->partner[s][own];
         const int next = (k + 1) % n;
-        if (partner >= 0 && draft->part[partner / 4] == draft->part[s] &&
-            (draft->flipped[partner / 4] != draft->flipped[s]) ==
-                !agree(draft, s, own, partner))
-            continue;
-        add_facet(skin, above[k] + 1, above[next] + 1, above[next], above[k]);
+        if (!goes_on(draft, s, own_side(draft, s, n, k)))
+            add_facet(skin, below[k], below[next], above[next], above[k]);
     }
 }
 
@@ -293,13 +312,20 @@ static void turn_sheets(struct skin *skin, const struct draft *draft)
     }
 }
 
-static void draft_init(struct draft *draft, const struct solid_mesh *mesh)
+/* Sheets between solids are left out. */
+static void draft_init(struct draft *draft, const struct solid_mesh *mesh, const int *covered,
+                       const int *partners)
 {
     *draft = (struct draft){.mesh = mesh};
     draft->elements = array_allocate((size_t)mesh->n_elements, sizeof *draft->elements);
-    for (int e = 0; e < mesh->n_elements; e++)
-        if (solid_mesh_is_sheet(mesh->elements[e]))
-            draft->elements[draft->n++] = e;
+    draft->on = array_allocate((size_t)mesh->n_elements, sizeof *draft->on);
+    for (int e = 0; e < mesh->n_elements; e++) {
+        if (!solid_mesh_is_sheet(mesh->elements[e]) ||
+            (covered[e] >= 0 && partners[covered[e]] != SOLID_MESH_OUTSIDE))
+            continue;
+        draft->on[draft->n] = covered[e];
+        draft->elements[draft->n++] = e;
+    }
     draft->normals = array_allocate((size_t)draft->n, sizeof *draft->normals);
     for (int s = 0; s < draft->n; s++) {
         struct skin_sheet sheet;
@@ -314,46 +340,92 @@ static void draft_init(struct draft *draft, const struct solid_mesh *mesh)
 static void draft_clear(struct draft *draft)
 {
     free(draft->elements);
+    free(draft->on);
     free(draft->normals);
     free(draft->sides);
     free(draft->partner);
-    free(draft->part);
     free(draft->flipped);
 }
 
-static void add_sheets(struct skin *skin, const struct solid_mesh *mesh)
+/* The vertex of a solid's node, from 1; what is new ends the list. */
+static int add_plain(struct skin *skin, int *plain, int node)
 {
-    struct draft draft;
-    draft_init(&draft, mesh);
-    skin->n_sheets = draft.n;
-    skin->sheets = array_allocate((size_t)draft.n, sizeof *skin->sheets);
-    turn_sheets(skin, &draft);
-    int(*rings)[4] = find_rings(skin, &draft);
-    list_around(skin, &draft, rings);
-    skin->nodes =
-        array_resize(skin->nodes, (size_t)skin->n_plain,
-                     (size_t)(skin->n_plain + 2 * skin->n_rings), sizeof *skin->nodes);
-    for (int r = 0; r < 2 * skin->n_rings; r++)
-        skin->nodes[skin->n_vertices++] = skin->rings[r / 2].node;
-    for (int s = 0; s < draft.n; s++)
-        add_sheet(skin, &draft, s, rings[s]);
+    if (plain[node] == 0) {
+        skin->nodes[skin->n_plain] = node;
+        plain[node] = ++skin->n_plain;
+    }
+    return plain[node];
+}
+
+/* Sides of solids without a sheet on them; and where rims of those come down. */
+static void add_solids(struct skin *skin, const struct draft *draft, const int *partners,
+                       int *plain)
+{
+    const struct solid_mesh *mesh = draft->mesh;
+    bool *bare = array_allocate(SOLID_MESH_SIDES * (size_t)mesh->n_elements, sizeof *bare);
+    for (int k = 0; k < SOLID_MESH_SIDES * mesh->n_elements; k++)
+        bare[k] = partners[k] == SOLID_MESH_OUTSIDE &&
+                  !solid_mesh_is_sheet(mesh->elements[k / SOLID_MESH_SIDES]);
+    for (int s = 0; s < draft->n; s++)
+        if (draft->on[s] >= 0)
+            bare[draft->on[s]] = false;
+    for (int k = 0; k < SOLID_MESH_SIDES * mesh->n_elements; k++) {
+        if (!bare[k])
+            continue;
+        int *facet = skin->facets[skin->n_facets++];
+        const int n = solid_mesh_side_nodes(mesh->elements[k / SOLID_MESH_SIDES],
+                                            k % SOLID_MESH_SIDES, facet);
+        for (int c = 0; c < n; c++)
+            facet[c] = add_plain(skin, plain, facet[c]) - 1;
+    }
+    for (int s = 0; s < draft->n; s++) {
+        const int *corners = mesh->elements[draft->elements[s]];
+        const int n = solid_mesh_n_corners(corners);
+        for (int side = 0; side < n && draft->on[s] >= 0; side++)
+            if (!goes_on(draft, s, side)) {
+                (void)add_plain(skin, plain, corners[side]);
+                (void)add_plain(skin, plain, corners[(side + 1) % n]);
+            }
+    }
+    skin->n_vertices = skin->n_plain;
+    free(bare);
+}
+
+static void add_sheets(struct skin *skin, const struct draft *draft, const int *plain)
+{
+    skin->n_sheets = draft->n;
+    skin->sheets = array_allocate((size_t)draft->n, sizeof *skin->sheets);
+    turn_sheets(skin, draft);
+    int(*rings)[4] = find_rings(skin, draft);
+    list_around(skin, draft, rings);
+    skin->nodes = array_resize(skin->nodes, (size_t)skin->n_plain,
+                               (size_t)(skin->n_plain + skin->n_both + skin->n_rings),
+                               sizeof *skin->nodes);
+    for (int r = 0; r < skin->n_rings; r++)
+        for (int k = 0; k < (r < skin->n_both ? 2 : 1); k++)
+            skin->nodes[skin->n_vertices++] = skin->rings[r].node;
+    for (int s = 0; s < draft->n; s++)
+        add_sheet(skin, draft, s, rings[s], plain);
     free(rings);
-    draft_clear(&draft);
 }
 
 /* ------------------------------------------------------------------------------------ all */
 
 void skin_build(struct skin *skin, const struct solid_mesh *mesh)
 {
-    struct solid_mesh_side *sides;
-    const int n = solid_mesh_surface(mesh, &sides);
+    struct draft draft;
+    int *partners = solid_mesh_partners(mesh), *covered = solid_mesh_covered(mesh);
+    int *plain = array_allocate((size_t)mesh->n_nodes, sizeof *plain); /* from 1; 0: none */
     *skin = (struct skin){.n_vertices = 0};
     skin->nodes = array_allocate((size_t)mesh->n_nodes, sizeof *skin->nodes);
-    skin->facets = array_allocate((size_t)count_facets(mesh, n), sizeof *skin->facets);
-    add_solids(skin, mesh, n, sides);
-    if (mesh->sheets != NULL)
-        add_sheets(skin, mesh);
-    free(sides);
+    skin->facets = array_allocate((size_t)count_facets(mesh, partners), sizeof *skin->facets);
+    draft_init(&draft, mesh, covered, partners);
+    add_solids(skin, &draft, partners, plain);
+    add_sheets(skin, &draft, plain);
+    draft_clear(&draft);
+    free(partners);
+    free(covered);
+    free(plain);
 }
 
 void skin_clear(struct skin *skin)

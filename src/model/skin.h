@@ -10,10 +10,15 @@
  * apart from each other, each with its own rim; so a node may carry several pairs of vertices.
  * In the inside of such an edge that changes nothing; on its outside it leaves a groove of
  * half the thickness.
+ *
+ * A sheet on the surface of a solid makes it higher by half the thickness: it has no side
+ * below, and its rims come down to the solid's nodes.  One between solids is not seen.  Sheets
+ * that leave the solid are apart from those on it.
  */
 #ifndef TREMIE_MODEL_SKIN_H
 #define TREMIE_MODEL_SKIN_H
 
+#include <stdbool.h>
 #include <stddef.h>
 
 #include "base/vec3.h"
@@ -36,14 +41,28 @@ struct skin_sheet {
 };
 
 struct skin {
-    int n_vertices, n_plain;    /* from n_plain on two a ring: above, below */
+    int n_vertices, n_plain;    /* from n_plain on those of rings, one after the other */
     int *nodes;                 /* of each vertex */
     int n_facets, (*facets)[4]; /* vertices; a triangle has -1 last */
-    int n_rings, ring_capacity, n_sheets;
+    int n_rings, n_both;        /* from n_both on those on solids, with one vertex: above */
+    int ring_capacity, n_sheets;
     struct skin_ring *rings;
     struct skin_sheet *sheets;
     int *around; /* sheets of rings */
 };
+
+/* A ring's vertex above; the one below, where there is one, follows. */
+static inline int skin_above(const struct skin *skin, int ring)
+{
+    return skin->n_plain + (ring < skin->n_both ? 2 * ring : skin->n_both + ring);
+}
+/* The ring of a vertex, -1 of a plain one; is it below? */
+static inline int skin_ring_of(const struct skin *skin, int vertex, bool *below)
+{
+    const int k = vertex - skin->n_plain;
+    *below = k >= 0 && k < 2 * skin->n_both && k % 2 != 0;
+    return k < 0 ? -1 : k < 2 * skin->n_both ? k / 2 : k - skin->n_both;
+}
 
 void skin_build(struct skin *skin, const struct solid_mesh *mesh);
 void skin_clear(struct skin *skin);

@@ -136,6 +136,14 @@ static void share_areas(const struct mesh *skin, struct solid_ball *balls)
     }
 }
 
+static bool has_sheet(const struct solid_mesh *mesh, const struct around *around, int node)
+{
+    for (int m = around->begin[node]; m < around->begin[node + 1]; m++)
+        if (solid_mesh_is_sheet(mesh->elements[around->list[m]]))
+            return true;
+    return false;
+}
+
 struct solid_ball *solid_balls(const struct solid_mesh *mesh, const struct mesh *skin,
                                const int *nodes)
 {
@@ -143,7 +151,7 @@ struct solid_ball *solid_balls(const struct solid_mesh *mesh, const struct mesh 
     const struct around around = find_around(mesh);
     for (int v = 0; v < skin->n_corners; v++) {
         balls[v].outer = nodes[v];
-        if (mesh->sheets == NULL)
+        if (!has_sheet(mesh, &around, nodes[v]))
             place_ball(mesh, skin, &around, v, &balls[v]);
     }
     share_areas(skin, balls);

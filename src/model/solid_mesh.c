@@ -170,6 +170,22 @@ int *solid_mesh_partners(const struct solid_mesh *mesh)
     return partners;
 }
 
+int *solid_mesh_covered(const struct solid_mesh *mesh)
+{
+    struct side_table table;
+    int *covered = array_allocate((size_t)mesh->n_elements, sizeof *covered);
+    memset(covered, -1, (size_t)mesh->n_elements * sizeof *covered);
+    if (mesh->sheets == NULL)
+        return covered;
+    table_build(&table, mesh);
+    for (int e = 0; e < mesh->n_elements; e++)
+        covered[e] = solid_mesh_is_sheet(mesh->elements[e])
+                         ? find_first(&table, mesh, mesh->elements[e])
+                         : -1;
+    table_clear(&table);
+    return covered;
+}
+
 int solid_mesh_surface(const struct solid_mesh *mesh, struct solid_mesh_side **sides)
 {
     int *partners = solid_mesh_partners(mesh);
@@ -347,7 +363,20 @@ struct choice {
     int *nodes, *elements;
 };
 
-static void choose(struct choice *choice, const struct job_volume *volume, const char *name)
+/* Nodes of facets that become sheets are taken, too. */
+static void choose_facets(struct choice *choice, const struct job_volume *volume,
+                          const struct job_solid *solid)
+{
+    for (int k = 0; k < solid->n_shells; k++) {
+        const struct job_volume_group *group = find_group(volume, solid->shells[k].set, 2);
+        for (int i = 0; group != NULL && i < group->n; i++)
+            for (int c = 0; c < 4 && volume->items[group->first + i][c] >= 0; c++)
+                choice->nodes[volume->items[group->first + i][c]] = 1;
+    }
+}
+
+static void choose(struct choice *choice, const struct job_volume *volume,
+                   const struct job_solid *solid, const char *name)
 {
     const struct job_volume_group *group = name != NULL ? find_group(volume, name, 3) : NULL;
     int n_nodes = 0, n_elements = 0;
@@ -366,6 +395,7 @@ static void choose(struct choice *choice, const struct job_volume *volume, const
         for (int c = 0; c < solid_mesh_n_corners(volume->elements[e]); c++)
             choice->nodes[volume->elements[e][c]] = 1;
     }
+    choose_facets(choice, volume, solid);
     for (int k = 0; k < volume->n_nodes; k++)
         if (choice->nodes[k] != 0)
             choice->nodes[k] = ++n_nodes;
@@ -399,7 +429,7 @@ static void take_file(struct solid_mesh *mesh, const struct job_volume *volume,
 /* What a set of the file holds, while its groups are gathered. */
 struct gathering {
     struct solid_mesh_list nodes, sides, elements;
-    int n_strays;
+    int n_strays, stray_capacity, (*strays)[4];
 };
 
 /* An item of a group of points, curves or surfaces, as far as the body has its nodes. */
@@ -422,8 +452,10 @@ static void gather_item(struct gathering *set, const struct solid_mesh *mesh,
     sort_four(nodes, sorted);
     if (side >= 0 && find_side(table, mesh, table->next[side], sorted) < 0)
         solid_mesh_list_add(&set->sides, side);
-    else
-        set->n_strays++;
+    else {
+        ARRAY_GROW(set->strays, set->n_strays + 1, set->stray_capacity);
+        memcpy(set->strays[set->n_strays++], nodes, sizeof nodes);
+    }
 }
 
 static void gather(struct gathering *set, const struct solid_mesh *mesh,
@@ -461,6 +493,7 @@ static void add_groups(struct solid_mesh *mesh, const struct job_volume *volume,
                 gather(&set, mesh, &table, volume, choice, &volume->groups[h]);
         solid_mesh_add_set(mesh, name, &set.nodes, &set.sides, &set.elements);
         mesh->sets[mesh->n_sets - 1].n_strays = set.n_strays;
+        mesh->sets[mesh->n_sets - 1].strays = set.strays;
         free(set.nodes.items);
         free(set.sides.items);
         free(set.elements.items);
@@ -472,7 +505,7 @@ static void build_file(struct solid_mesh *mesh, const struct job_body *body)
 {
     const struct job_volume *volume = &body->solid.volume;
     struct choice choice;
-    choose(&choice, volume, body->group);
+    choose(&choice, volume, &body->solid, body->group);
     take_file(mesh, volume, &choice);
     add_groups(mesh, volume, &choice);
     free(choice.nodes);
@@ -488,6 +521,108 @@ static void set_thickness(struct solid_mesh *mesh, const struct job_thickness *a
     for (int k = 0; set != NULL && k < set->n_elements; k++)
         if (solid_mesh_is_sheet(mesh->elements[set->elements[k]]))
             mesh->sheets[set->elements[k]].thickness = asked->thickness;
+}
+
+/* Appends to a list that ascends. */
+static void append(int **list, int *n, int item)
+{
+    *list = array_resize(*list, (size_t)*n, (size_t)*n + 1, sizeof **list);
+    (*list)[(*n)++] = item;
+}
+
+/* Sets have what lies in them whole. */
+static void add_to_sets(struct solid_mesh *mesh, int element)
+{
+    const int *corners = mesh->elements[element];
+    for (int k = 0; k < mesh->n_sets; k++) {
+        struct solid_mesh_set *set = &mesh->sets[k];
+        bool all = true;
+        for (int c = 0; c < solid_mesh_n_corners(corners); c++)
+            all = all && bsearch(&corners[c], set->nodes, (size_t)set->n_nodes,
+                                 sizeof *set->nodes, compare_ints) != NULL;
+        if (all)
+            append(&set->elements, &set->n_elements, element);
+    }
+}
+
+static void add_shell(struct solid_mesh *mesh, const struct job_body *body,
+                      const struct job_shell *asked, const int nodes[4])
+{
+    const int e = mesh->n_elements++,
+              element[8] = {nodes[0],         nodes[1], nodes[2], nodes[3],
+                            SOLID_MESH_SHEET, -1,       -1,       -1};
+    memcpy(mesh->elements[e], element, sizeof element);
+    mesh->sheets[e] = (struct solid_mesh_sheet){
+        .thickness = asked->thickness,
+        .membrane = asked->model == JOB_SHELL_MEMBRANE,
+        .material = asked->has_material ? asked->material : body->material};
+    if (mesh->element_numbers != NULL)
+        mesh->element_numbers[e] = e > 0 ? mesh->element_numbers[e - 1] + 1 : 1;
+}
+
+/* Sheets from this one on that lie on no side of a solid are on the surface themselves. */
+static void add_free_sides(struct solid_mesh *mesh, int first)
+{
+    int *covered = solid_mesh_covered(mesh);
+    for (int k = 0; k < mesh->n_sets; k++) {
+        struct solid_mesh_set *set = &mesh->sets[k];
+        const bool is_surface = strcmp(set->name, "surface") == 0;
+        for (int e = first; e < mesh->n_elements; e++) {
+            int s = is_surface ? -1 : set->n_strays - 1;
+            while (s >= 0 && memcmp(set->strays[s], mesh->elements[e], 4 * sizeof(int)) != 0)
+                s--;
+            if (covered[e] >= 0 || (!is_surface && s < 0))
+                continue;
+            set->sides = array_resize(set->sides, (size_t)set->n_sides,
+                                      (size_t)set->n_sides + 1, sizeof *set->sides);
+            set->sides[set->n_sides++] = (struct solid_mesh_side){e, 0};
+            if (!is_surface)
+                memcpy(set->strays[s], set->strays[--set->n_strays], sizeof *set->strays);
+        }
+    }
+    free(covered);
+}
+
+/* Room for sheets on all that shells are asked for; those that are there are none. */
+static void reserve_shells(struct solid_mesh *mesh, const struct job_body *body)
+{
+    const size_t had = (size_t)mesh->n_elements;
+    size_t n = had;
+    for (int k = 0; k < body->solid.n_shells; k++) {
+        const struct solid_mesh_set *set = solid_mesh_find(mesh, body->solid.shells[k].set);
+        n += set != NULL ? (size_t)(set->n_sides + set->n_strays) : 0;
+    }
+    mesh->elements = array_resize(mesh->elements, had, n, sizeof *mesh->elements);
+    mesh->sheets = array_allocate(n, sizeof *mesh->sheets);
+    if (mesh->element_numbers != NULL)
+        mesh->element_numbers =
+            array_resize(mesh->element_numbers, had, n, sizeof *mesh->element_numbers);
+    for (size_t e = 0; e < had; e++)
+        mesh->sheets[e].material = body->material;
+}
+
+/* A set that is not there, or has nothing, is told of elsewhere. */
+static void add_shells(struct solid_mesh *mesh, const struct job_body *body)
+{
+    if (body->solid.n_shells == 0)
+        return;
+    const int first = mesh->n_elements;
+    reserve_shells(mesh, body);
+    for (int k = 0; k < body->solid.n_shells; k++) {
+        const struct job_shell *asked = &body->solid.shells[k];
+        const struct solid_mesh_set *set = solid_mesh_find(mesh, asked->set);
+        for (int s = 0; set != NULL && s < set->n_sides; s++) {
+            int nodes[4];
+            solid_mesh_side_nodes(mesh->elements[set->sides[s].element], set->sides[s].side,
+                                  nodes);
+            add_shell(mesh, body, asked, nodes);
+        }
+        for (int s = 0; set != NULL && s < set->n_strays; s++)
+            add_shell(mesh, body, asked, set->strays[s]);
+    }
+    add_free_sides(mesh, first);
+    for (int e = first; e < mesh->n_elements; e++)
+        add_to_sets(mesh, e);
 }
 
 void solid_mesh_build(struct solid_mesh *mesh, const struct job_body *body)
@@ -509,6 +644,8 @@ void solid_mesh_build(struct solid_mesh *mesh, const struct job_body *body)
         add_surface(mesh, n, surface);
     for (int k = 0; k < solid->n_sets; k++)
         add_region(mesh, &solid->sets[k], n, surface);
+    if (body->model == JOB_MODEL_SOLID)
+        add_shells(mesh, body);
     for (int k = 0; k < solid->n_thicknesses; k++)
         set_thickness(mesh, &solid->thicknesses[k]);
     free(surface);
@@ -521,6 +658,7 @@ void solid_mesh_clear(struct solid_mesh *mesh)
         free(mesh->sets[k].nodes);
         free(mesh->sets[k].sides);
         free(mesh->sets[k].elements);
+        free(mesh->sets[k].strays);
     }
     free(mesh->sets);
     free(mesh->nodes);

@@ -21,6 +21,7 @@
 #define TREMIE_MODEL_SOLID_MESH_H
 
 #include <stdbool.h>
+#include <stddef.h>
 #include <stdint.h>
 
 #include "base/vec3.h"
@@ -42,14 +43,15 @@ struct solid_mesh_set {
     int *nodes;
     struct solid_mesh_side *sides; /* on the surface */
     int *elements;
-    int n_strays; /* facets of the file that are no such side */
+    int n_strays;     /* facets of the file that are no such side */
+    int (*strays)[4]; /* their nodes; of three the fourth is -1 */
 };
 
 /* What an element of a shell or membrane is besides its nodes. */
 struct solid_mesh_sheet {
     double thickness; /* [m]; 0 of all other elements */
     bool membrane;
-    int material; /* among the job's */
+    int material; /* among the job's, of all elements */
 };
 
 struct solid_mesh {
@@ -85,6 +87,11 @@ static inline int solid_mesh_n_corners(const int element[8])
 {
     return element[4] >= 0 ? 8 : element[3] >= 0 ? 4 : 3;
 }
+/* What an element is made of, where all without sheets are of `standard`. */
+static inline int solid_mesh_material(const struct solid_mesh *mesh, int element, int standard)
+{
+    return mesh->sheets != NULL ? mesh->sheets[element].material : standard;
+}
 static inline int solid_mesh_n_sides(const int element[8])
 {
     return element[4] >= 0 ? 6 : solid_mesh_is_sheet(element) ? 1 : 4;
@@ -95,6 +102,10 @@ static inline int solid_mesh_n_sides(const int element[8])
 int solid_mesh_side_corners(int n_corners, int side, int corners[4]);
 /* The nodes of a side likewise.  The fourth of three is -1. */
 int solid_mesh_side_nodes(const int element[8], int side, int nodes[4]);
+
+/* Of each element that is a sheet the side that has its nodes, counted as below, on the surface
+ * or between two elements; else -1.  The caller frees it. */
+int *solid_mesh_covered(const struct solid_mesh *mesh);
 
 /* What lies behind side s of element e, at SOLID_MESH_SIDES * e + s: the number, counted so, of
  * the side that it shares its nodes with; or one of these.  The caller frees it. */

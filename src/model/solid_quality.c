@@ -195,12 +195,18 @@ static void add_element(struct solid_quality *quality, const struct solid_mesh *
     const double warp = warp_of(mesh, e);
     if (solid_mesh_is_sheet(mesh->elements[e])) {
         const double thickness = mesh->sheets[e].thickness;
+        const double width = sqrt(solid_quality_volume(mesh, e) / thickness);
+        const double thick = thickness / width;
         quality->n_quads += n == 4;
         quality->n_triangles += n == 3;
         quality->thickness_least =
             thickness < quality->thickness_least ? thickness : quality->thickness_least;
         quality->thickness_most =
             thickness > quality->thickness_most ? thickness : quality->thickness_most;
+        if (thick > quality->thick) {
+            quality->thick = thick;
+            quality->thick_worst = e;
+        }
     } else {
         quality->n_hexahedra += n == 8;
         quality->n_tetrahedra += n == 4;
@@ -421,11 +427,12 @@ static void find_doubles(struct finder *finder)
     qsort(known, (size_t)mesh->n_elements, sizeof *known, compare_known);
     for (int k = 1; k < mesh->n_elements; k++)
         if (compare_nodes(&known[k - 1], &known[k]) == 0)
-            find(finder,
-                 "%s has the nodes of element %lld; each element once is expected, in one "
-                 "physical volume or in format 4.1",
+            find(finder, "%s has the nodes of element %lld; each element once is expected, %s",
                  element_name(finder, known[k].element, name),
-                 solid_quality_element_number(mesh, known[k - 1].element));
+                 solid_quality_element_number(mesh, known[k - 1].element),
+                 solid_mesh_is_sheet(mesh->elements[known[k].element])
+                     ? "and one sheet in a place"
+                     : "in one physical volume or in format 4.1");
     end_kind(finder, "elements that are there twice");
     free(known);
 }

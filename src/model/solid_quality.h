@@ -27,6 +27,8 @@ struct solid_quality {
                                              the others, over the root of the area [-] */
     int warp_worst;
     double thickness_least, thickness_most; /* of sheets [m] */
+    double thick;                           /* most thickness over the root of the area [-] */
+    int thick_worst;
 };
 
 struct solid_quality solid_quality_of(const struct solid_mesh *mesh);

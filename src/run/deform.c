@@ -21,12 +21,13 @@
 /* ---- Building
  * --------------------------------------------------------------------------------- */
 
-/* A job's material as elements have it; `points` has room for all of its table. */
-static struct solid_material material_of(const struct job_body *body,
+/* A job's material as solids or sheets of the body have it; `points` has room for all of its
+ * table. */
+static struct solid_material material_of(const struct job_body *body, bool sheet,
                                          const struct job_material *from,
                                          struct solid_yield_point *points)
 {
-    const bool stiff = body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS;
+    const bool stiff = sheet || body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS;
     const double held = body->solid.hourglass.coefficient;
     points[0] = (struct solid_yield_point){0.0, from->yield};
     for (int k = 0; k < from->n_hardening_table; k++)
@@ -45,31 +46,68 @@ static struct solid_material material_of(const struct job_body *body,
     };
 }
 
+/* What elements are made of: of each the number of its material, of all materials, for solids
+ * and sheets apart, what they are. */
+struct made_of {
+    int *of_element, n;
+    struct solid_material *list;
+};
+
+static void made_of_init(struct made_of *made, const struct solid_mesh *mesh,
+                         const struct job_body *body, const struct job *job)
+{
+    int *number = array_allocate(2 * (size_t)job->n_materials, sizeof *number); /* from 1 */
+    *made = (struct made_of){.n = 0};
+    made->of_element = array_allocate((size_t)mesh->n_elements, sizeof *made->of_element);
+    made->list = array_allocate(2 * (size_t)job->n_materials, sizeof *made->list);
+    for (int e = 0; e < mesh->n_elements; e++) {
+        const bool sheet = solid_mesh_is_sheet(mesh->elements[e]);
+        const int asked = solid_mesh_material(mesh, e, body->material);
+        int *own = &number[2 * asked + sheet];
+        if (*own == 0) {
+            const struct job_material *from = &job->materials[asked];
+            struct solid_yield_point *points =
+                array_allocate((size_t)from->n_hardening_table + 1, sizeof *points);
+            made->list[made->n] = material_of(body, sheet, from, points);
+            *own = ++made->n;
+        }
+        made->of_element[e] = *own - 1;
+    }
+    free(number);
+}
+
+static void made_of_clear(struct made_of *made)
+{
+    for (int m = 0; m < made->n; m++)
+        free((void *)(uintptr_t)made->list[m].yield);
+    free(made->of_element);
+    free(made->list);
+}
+
 static void build_solid(struct solid *solid, const struct solid_mesh *mesh,
-                        const struct job_body *body, const struct job_material *from,
-                        enum isa isa)
+                        const struct job_body *body, const struct job *job, enum isa isa)
 {
     const size_t n = (size_t)mesh->n_elements;
     enum solid_element_shape *shapes = array_allocate(n, sizeof *shapes);
     double *thickness = array_allocate(n, sizeof *thickness);
+    struct made_of made;
     for (int e = 0; e < mesh->n_elements; e++) {
         shapes[e] = solid_plan_shape(mesh, e);
         thickness[e] = mesh->sheets != NULL ? mesh->sheets[e].thickness : 0.0;
     }
-    struct solid_yield_point *points =
-        array_allocate((size_t)from->n_hardening_table + 1, sizeof *points);
-    const struct solid_material material = material_of(body, from, points);
+    made_of_init(&made, mesh, body, job);
     const struct solid_parts parts = {.n_nodes = mesh->n_nodes,
                                       .places = (double(*)[3])mesh->nodes,
                                       .n_elements = mesh->n_elements,
                                       .shapes = shapes,
                                       .corners = mesh->elements,
+                                      .materials = made.of_element,
                                       .thickness = mesh->sheets != NULL ? thickness : NULL,
                                       .layers = body->sheet.layers};
-    solid_create(solid, &parts, 1, &material, isa);
+    solid_create(solid, &parts, made.n, made.list, isa);
+    made_of_clear(&made);
     free(shapes);
     free(thickness);
-    free(points);
 }
 
 static void add_support(struct solid *solid, const struct solid_condition *condition)
@@ -173,7 +211,7 @@ static void build_body(struct deform *deform, const struct simulation *sim, int 
                                 .first_element = deform->n_elements,
                                 .first_ball = deform->n_balls};
     const struct solid_mesh *mesh = solid_mesh_borrow(body, &built);
-    build_solid(&own->solid, mesh, body, &sim->job->materials[body->material], isa);
+    build_solid(&own->solid, mesh, body, sim->job, isa);
     prescribe(&own->solid, mesh, body);
     deform_share_init(&own->share, sim->comm, &own->solid);
     deform_skin_init(&own->skin, mesh, &sim->bodies.list[b]);

@@ -11,6 +11,7 @@
 
 #include "base/array.h"
 #include "job/job.h"
+#include "model/solid_mesh.h"
 #include "physics/principal.h"
 #include "run/simulation.h"
 #include "solid/solid_surface.h"
@@ -129,7 +130,9 @@ static void add_corners(const struct solid *solid, int width, struct snapshot_so
     shown->parts[SNAPSHOT_CORNERS].n = solid->n_elements;
     for (int e = 0; e < solid->n_elements; e++)
         for (int c = 0; c < width; c++)
-            *corners++ = c < solid_element_corners(solid->shape[e]) ? solid->corners[e][c] : -1;
+            *corners++ = c < solid_element_corners(solid->shape[e])    ? solid->corners[e][c]
+                         : c == 4 && shell_element_is(solid->shape[e]) ? SOLID_MESH_SHEET
+                                                                       : -1;
 }
 
 /* As XDMF lists elements of several kinds. */
@@ -167,7 +170,7 @@ static void add_mesh(const struct solid *solid, const struct solid_surface *surf
                      struct snapshot_solid *shown)
 {
     struct snapshot_rows *reference = &shown->parts[SNAPSHOT_REFERENCE];
-    int n_tetrahedra = 0, n_hexahedra = 0;
+    int n_tetrahedra = 0, n_hexahedra = 0; /* the others are sheets */
     for (int e = 0; e < solid->n_elements; e++) {
         n_tetrahedra += solid->shape[e] == SOLID_ELEMENT_TETRAHEDRON;
         n_hexahedra += solid->shape[e] == SOLID_ELEMENT_HEXAHEDRON;
@@ -176,7 +179,7 @@ static void add_mesh(const struct solid *solid, const struct solid_surface *surf
     reference->rows = array_allocate((size_t)solid->n_nodes, sizeof *solid->reference);
     memcpy(reference->rows, solid->reference,
            (size_t)solid->n_nodes * sizeof *solid->reference);
-    add_corners(solid, n_hexahedra > 0 ? SOLID_ELEMENT_CORNERS : 4, shown);
+    add_corners(solid, n_tetrahedra < solid->n_elements ? SOLID_ELEMENT_CORNERS : 4, shown);
     add_triangles(surface, shown);
     shown->mixed = n_tetrahedra < solid->n_elements && n_hexahedra < solid->n_elements;
     if (shown->mixed)

@@ -96,10 +96,11 @@ static void turn_arms(const struct deform_body *deform)
 /* From the vertex's node to it [m]. */
 static struct vec3 arm_of(const struct deform_skin *skin, int v)
 {
-    const int k = v - skin->shape.n_plain;
-    if (k < 0)
+    bool below;
+    const int ring = skin_ring_of(&skin->shape, v, &below);
+    if (ring < 0)
         return (struct vec3){0.0, 0.0, 0.0};
-    return vec3_scale(k % 2 == 0 ? 1.0 : -1.0, skin->arms[k / 2]);
+    return vec3_scale(below ? -1.0 : 1.0, skin->arms[ring]);
 }
 
 static struct vec3 place_of(const struct deform_body *deform, int v)
@@ -226,7 +227,7 @@ static void list_rings(struct deform_body *deform)
         bool all = true;
         for (int k = shape->rings[r].begin; k < shape->rings[r].end; k++)
             all = all && here[shape->around[k]];
-        skin->is_here[shape->n_plain + 2 * r] = skin->is_here[shape->n_plain + 2 * r + 1] = all;
+        memset(skin->is_here + skin_above(shape, r), all, r < shape->n_both ? 2 : 1);
         if (all)
             skin->rings[skin->n_rings++] = r;
     }

@@ -29,19 +29,20 @@ struct ground {
     const struct job *job;
     const struct job_body *body;
     const struct solid_mesh *mesh;
-    struct solid_mesh own; /* of the mesh, where none is kept */
-    struct solid_element_material material;
+    struct solid_mesh own;       /* of the mesh, where none is kept */
     double *mass;                /* [kg] */
     double *stiffness, *damping; /* [N/m], [kg/s]; NULL: without contacts */
 };
 
 /* ------------------------------------------------------------------------------- elements */
 
-static struct solid_element_material material_of(const struct job *job,
-                                                 const struct job_body *body)
+static struct solid_element_material material_of(const struct ground *ground, int e)
 {
-    const struct job_material *from = &job->materials[body->material];
-    const bool stiff = body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS;
+    const struct job_body *body = ground->body;
+    const struct job_material *from =
+        &ground->job->materials[solid_mesh_material(ground->mesh, e, body->material)];
+    const bool stiff = solid_mesh_is_sheet(ground->mesh->elements[e]) ||
+                       body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS;
     const double held = body->solid.hourglass.coefficient;
     struct solid_element_material material = {.density = from->density,
                                               .damping = body->solid.damping.stiffness,
@@ -68,7 +69,8 @@ static double mass_of(const struct ground *ground, int e)
     const enum solid_element_shape shape = solid_plan_shape(ground->mesh, e);
     double x[SOLID_ELEMENT_CORNERS][3];
     places_of(ground->mesh, e, x);
-    return ground->material.density *
+    const int material = solid_mesh_material(ground->mesh, e, ground->body->material);
+    return ground->job->materials[material].density *
            (shell_element_is(shape)
                 ? shell_element_area(shape, x) * ground->mesh->sheets[e].thickness
                 : solid_element_volume(shape, x));
@@ -78,19 +80,19 @@ static struct solid_element_load load_of(const struct ground *ground, int e)
 {
     const enum solid_element_shape shape = solid_plan_shape(ground->mesh, e);
     const double mass = mass_of(ground, e);
+    const struct solid_element_material material = material_of(ground, e);
     double x[SOLID_ELEMENT_CORNERS][3];
     places_of(ground->mesh, e, x);
     return shell_element_is(shape)
                ? shell_element_load(shape, x, mass, ground->mesh->sheets[e].thickness,
-                                    ground->body->sheet.layers, &ground->material)
-               : solid_element_load(shape, x, mass, &ground->material);
+                                    ground->body->sheet.layers, &material)
+               : solid_element_load(shape, x, mass, &material);
 }
 
 static void ground_init(struct ground *ground, const struct job *job, int b)
 {
     *ground = (struct ground){.job = job, .body = &job->bodies[b]};
     ground->mesh = solid_mesh_borrow(ground->body, &ground->own);
-    ground->material = material_of(job, ground->body);
     ground->mass = array_allocate((size_t)ground->mesh->n_nodes, sizeof *ground->mass);
     for (int e = 0; e < ground->mesh->n_elements; e++) {
         const int *corners = ground->mesh->elements[e], n = solid_mesh_n_corners(corners);

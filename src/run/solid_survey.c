@@ -197,6 +197,21 @@ static void check_thickness(const struct survey *survey, int k)
              set->name);
 }
 
+static void check_shell(const struct survey *survey, int k)
+{
+    const struct job_shell *asked = &survey->body->solid.shells[k];
+    const struct solid_mesh_set *set = solid_mesh_find(survey->mesh, asked->set);
+    char path[PATH];
+    snprintf(path, sizeof path, "bodies.%d.shells.%d.set", survey->b, k);
+    if (set == NULL)
+        refuse_set(survey, path, asked->set, asked->place);
+    else if (set->n_sides + set->n_strays == 0)
+        FIND(survey, asked->place,
+             "%s: set '%s' has no sides on the surface that a shell could lie on; some are "
+             "expected",
+             path, set->name);
+}
+
 static void check_body(struct job *job, int b, struct mistakes *mistakes)
 {
     struct job_body *body = &job->bodies[b];
@@ -230,6 +245,8 @@ static void check_body(struct job *job, int b, struct mistakes *mistakes)
         else
             check_set(&survey, k, set);
     }
+    for (int k = 0; k < solid->n_shells; k++)
+        check_shell(&survey, k);
     for (int k = 0; k < solid->n_thicknesses; k++)
         check_thickness(&survey, k);
     for (int k = 0; k < job->output.n_probes; k++)
@@ -330,6 +347,16 @@ static void list_kinds(const struct solid_quality *q, char text[TEXT])
                                      kinds[k].n, kinds[k].name);
 }
 
+static double mass_of(const struct job *job, const struct job_body *body,
+                      const struct solid_mesh *mesh)
+{
+    double mass = 0.0;
+    for (int e = 0; e < mesh->n_elements; e++)
+        mass += solid_quality_volume(mesh, e) *
+                job->materials[solid_mesh_material(mesh, e, body->material)].density;
+    return mass;
+}
+
 void solid_survey_print(const struct job *job, const struct bodies *bodies,
                         const struct materials *materials, const struct limits_spheres *spheres,
                         int b)
@@ -346,7 +373,7 @@ void solid_survey_print(const struct job *job, const struct bodies *bodies,
                body->model == JOB_MODEL_SOLID   ? "solid"
                : body->model == JOB_MODEL_SHELL ? "shell"
                                                 : "membrane",
-               material->name, kinds, mesh->n_nodes, q.volume * material->density);
+               material->name, kinds, mesh->n_nodes, mass_of(job, body, mesh));
     report_say("          x %.4g .. %.4g, y %.4g .. %.4g, z %.4g .. %.4g m", q.low.x, q.high.x,
                q.low.y, q.high.y, q.low.z, q.high.z);
     report_say("          volume %.6g m3, surface %.4g m2 in %d sides", q.volume, q.area,
@@ -447,6 +474,31 @@ static void warn_of_layers(const struct job_body *body)
                     body->name, cells[2], cells[2] == 1.0 ? "" : "s", LAYERS);
 }
 
+/* Thick, thin and warped sheets. */
+static void warn_of_sheets(const struct job_body *body, const struct solid_mesh *mesh,
+                           const struct solid_quality *q)
+{
+    static const double WARP = 0.1, THICK = 1.0; /* of the width of an element */
+    static const double LIKELY[2] = {1e-5, 0.1}; /* of the body's size */
+    const double size = vec3_norm(vec3_sub(q->high, q->low));
+    char name[TEXT];
+    if (mesh->sheets == NULL)
+        return;
+    if (!(q->thickness_least >= LIKELY[0] * size && q->thickness_most <= LIKELY[1] * size))
+        report_warn(
+            "body '%s': it is %.3g to %.3g m thick and %.3g m large; is the unit of its "
+            "thickness right?",
+            body->name, q->thickness_least, q->thickness_most, size);
+    if (q->thick > THICK)
+        report_warn("body '%s': %s is %.3g times as thick as wide; where sheets meet so thick "
+                    "ones are in each other, and solids are better",
+                    body->name, element_name(mesh, q->thick_worst, name), q->thick);
+    if (q->warp > WARP)
+        report_warn("body '%s': %s is warped by %.2g of its width; below %.1f is better, or "
+                    "triangles",
+                    body->name, element_name(mesh, q->warp_worst, name), q->warp, WARP);
+}
+
 /* Springs against hourglass modes hold what ought to flow. */
 static void warn_of_flow(const struct job *job, const struct job_body *body)
 {
@@ -496,6 +548,7 @@ void solid_survey_warn(const struct job *job, const struct bodies *bodies, int b
     warn_of_layers(body);
     warn_of_flow(job, body);
     warn_of_step(job, bodies, mesh, b);
+    warn_of_sheets(body, mesh, &q);
     if (q.jacobian_least < JACOBIAN)
         report_warn(
             "body '%s': %s is nearly folded or flat, its scaled Jacobian is %.2g; above "

@@ -373,7 +373,13 @@ static void watch_depth(struct simulation *sim)
     for (int k = 0; k < touch->contacts.n; k++) {
         const struct facet_contact *contact = &touch->contacts.list[k];
         const int i = contact->sphere;
-        if (!(contact->overlap > most * sphere_radius(&touch->spheres, i)))
+        const double below =
+            sim->bodies.list[contact->body].skin != NULL
+                ? facet_contacts_reach(&touch->contacts, &touch->spheres, &sim->bodies, k)
+                : 0.0;
+        const double depth = contact->overlap > below ? contact->overlap : below;
+        if (!facet_contact_touched(contact) ||
+            !(depth > most * sphere_radius(&touch->spheres, i)))
             continue;
         const struct where where = find_ball(&sim->deform, touch->owned[i]);
         const struct deform_body *deform = &sim->deform.list[where.deform];
@@ -387,7 +393,7 @@ static void watch_depth(struct simulation *sim)
             sim->watch.what, sizeof sim->watch.what,
             "node %d of body '%.40s' at (%.5g, %.5g, %.5g) m is %.3g m in body '%.40s'; %s",
             deform->balls[where.vertex].outer + 1, sim->bodies.list[deform->body].name, at[0],
-            at[1], at[2], contact->overlap, sim->bodies.list[contact->body].name, reach);
+            at[1], at[2], depth, sim->bodies.list[contact->body].name, reach);
         return;
     }
 }

@@ -20,6 +20,10 @@
 
 /* Share of the overlap at rest by which a place may be rounded. */
 static const double ROUNDING_BORNE = 0.01;
+/* The part of its radius that a sphere may be in a sheet whose other side it comes out of: from
+ * .18 on it is pushed the less the deeper it is, and beyond its middle to the other side.
+ * (9.4) */
+static const double THROUGH = 0.5;
 /* Share of the critical step that is advised when a step is too large. */
 static const double STEP_ADVISED = 0.5;
 
@@ -441,6 +445,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
         SPENT_INNER,
         SPENT_DEFORM,
         OVERLAP,
+        DEPTH,
         MOTION,
         BAD,
         ELEMENT,
@@ -458,6 +463,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
         [SPENT_INNER] = spent[1],
         [SPENT_DEFORM] = sim->deform.spent,
         [OVERLAP] = pairs > facets ? pairs : facets,
+        [DEPTH] = sim->facets.through_max,
         [MOTION] = motion,
         [BAD] = bad ? 1.0 : 0.0,
         [ELEMENT] = sim->deform.failed ? 1.0 : 0.0,
@@ -480,7 +486,7 @@ void watch_agree(struct watch *watch, struct simulation *sim, double spent[2], b
         fail(watch, WATCH_FAR);
     if (sim->dt * values[RATE] > sim->job->watch.step)
         fail(watch, WATCH_STEP);
-    if (watch->overlap > sim->job->watch.overlap)
+    if (watch->overlap > sim->job->watch.overlap || values[DEPTH] > THROUGH)
         fail(watch, WATCH_OVERLAP);
     if (watch->motion > sim->job->watch.motion && !isinf(watch->motion))
         fail(watch, WATCH_MOTION);
@@ -615,6 +621,27 @@ static void find_deepest_pair(const struct simulation *sim, struct deepest *deep
     }
 }
 
+/* Overlap of an entry of the last forces; where a body deforms at least how far it is in by now
+ * [m]. */
+static double overlap_of_facet(const struct simulation *sim, int entry)
+{
+    const struct facet_contact *contact = &sim->facets.list[entry];
+    const struct spheres *spheres = &sim->spheres;
+    const struct body *body = &sim->bodies.list[contact->body];
+    const int i = contact->sphere;
+    if (body->skin != NULL) {
+        const double reach = facet_contacts_reach(&sim->facets, spheres, &sim->bodies, entry);
+        return reach > contact->overlap ? reach : contact->overlap;
+    }
+    const double distance =
+        contact_geometry_closest(&body->mesh, contact->feature, sphere_place(spheres, i))
+            .distance;
+    return overlap_of(
+        &sim->materials.pairs[spheres->material[i] * sim->materials.n + body->material],
+        contact->history[CONTACT_RADIUS_LANE], sphere_curvature(spheres, i),
+        sphere_radius(spheres, i) - distance);
+}
+
 static void find_deepest_facet(const struct simulation *sim, struct deepest *deepest)
 {
     const struct spheres *spheres = &sim->spheres;
@@ -628,12 +655,7 @@ static void find_deepest_facet(const struct simulation *sim, struct deepest *dee
             &sim->materials.pairs[spheres->material[i] * sim->materials.n + body->material];
         const struct vec3 x = sphere_place(spheres, i);
         const double curvature = sphere_curvature(spheres, i);
-        if (body->skin != NULL)
-            body_renew_face(body, contact->feature);
-        const double distance =
-            contact_geometry_closest(&body->mesh, contact->feature, x).distance;
-        const double overlap = overlap_of(pair, contact->history[CONTACT_RADIUS_LANE],
-                                          curvature, sphere_radius(spheres, i) - distance);
+        const double overlap = overlap_of_facet(sim, k);
         if (!(overlap * curvature > deepest->overlap))
             continue;
         deepest->overlap = overlap * curvature;
@@ -703,6 +725,11 @@ static void explain_overlap(const struct simulation *sim, const char *when,
         report_error("overlap at the start: %s overlap by %.3g of a radius, more than "
                      "watch.overlap = %.3g; place them farther apart",
                      deepest->what, deepest->overlap, limit);
+    else if (deepest->overlap <= limit)
+        report_error("contact too soft at %s: %s overlap by %.3g of a radius, more than the "
+                     "body is thick, so that the sphere goes through; use a larger young, "
+                     "twice say, a greater thickness, or lower speeds and loads",
+                     when, deepest->what, deepest->overlap);
     else if (deepest->approaches)
         report_error("contact too soft at %s: %s overlap by %.3g of a radius, more than "
                      "watch.overlap = %.3g, and still approach; use young at least %.2g times "

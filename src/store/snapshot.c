@@ -14,6 +14,7 @@
 
 #include "base/array.h"
 #include "base/comm.h"
+#include "model/solid_mesh.h"
 #include "store/crc32.h"
 #include "store/file.h"
 #include "store/h5.h"
@@ -276,6 +277,24 @@ void snapshot_get(const struct table *table, int64_t i, int column, double *valu
                     : field->type == FIELD_INT64 ? (double)value.whole
                                                  : (double)value.small;
     }
+}
+
+static const int32_t *corners_of(const struct snapshot_solid *solid, int64_t element)
+{
+    const struct snapshot_rows *corners = &solid->parts[SNAPSHOT_CORNERS];
+    return (const int32_t *)corners->rows + element * corners->width;
+}
+
+int snapshot_n_corners(const struct snapshot_solid *solid, int64_t element)
+{
+    const bool is_wide = solid->parts[SNAPSHOT_CORNERS].width == 8;
+    return is_wide ? solid_mesh_n_corners(corners_of(solid, element)) : 4;
+}
+
+bool snapshot_is_sheet(const struct snapshot_solid *solid, int64_t element)
+{
+    return solid->parts[SNAPSHOT_CORNERS].width == 8 &&
+           solid_mesh_is_sheet(corners_of(solid, element));
 }
 
 /* ----------------------------------------------------------------------------------- meshes */
@@ -742,23 +761,26 @@ static void *read_mesh(struct h5 *h5, const char *kind, const char *name,
     return rows;
 }
 
-/* Is it the number of a node?  -1 is where `none` says so. */
-static void check_node(struct h5 *h5, const struct snapshot_solid *solid, int p, int32_t node,
-                       bool none)
+/* Is it the number of a node, or what may stand for none? */
+static bool is_node(const struct snapshot_solid *solid, const int32_t *row, int width, int c)
 {
-    if (none ? node != -1 : node < 0 || node >= solid->n_nodes)
-        h5_fail(h5, "/solids/%s/%s: there is no node %d", solid->name, PARTS[p].name,
-                (int)node);
+    const bool is_sheet = width == 8 && row[4] == SOLID_MESH_SHEET;
+    if (row[c] >= 0)
+        return row[c] < solid->n_nodes && (c < 4 || row[4] >= 0);
+    if (c == 4)
+        return row[c] == -1 || is_sheet;
+    return row[c] == -1 && (c > 4 ? row[4] < 0 : c == 3 && is_sheet);
 }
 
-/* The last four of a tetrahedron among hexahedra are none. */
 static void check_nodes(struct h5 *h5, const struct snapshot_solid *solid, int p)
 {
     const struct snapshot_rows *part = &solid->parts[p];
     for (int64_t k = 0; k < part->n; k++) {
         const int32_t *row = (const int32_t *)part->rows + k * part->width;
         for (int c = 0; c < part->width; c++)
-            check_node(h5, solid, p, row[c], c >= 4 && row[4] < 0);
+            if (!is_node(solid, row, part->width, c))
+                h5_fail(h5, "/solids/%s/%s: there is no node %d", solid->name, PARTS[p].name,
+                        (int)row[c]);
     }
 }
 

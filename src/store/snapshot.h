@@ -15,8 +15,10 @@
  *                    from 0); attributes: material, points_step, triangles_step
  *   /solids/NAME/    of bodies that deform: reference (places of nodes at the start), corners
  *                    (n x 8 nodes of elements, as in model/solid_mesh.h, of a tetrahedron the
- *                    last four -1; n x 4 where all are tetrahedra), triangles (of the surface),
- *                    cells (where there are both kinds: XDMF's list of mixed cells);
+ *                    last four -1, of a quad of a shell or membrane -2 -1 -1 -1, of a triangle
+ *                    with -1 before them; n x 4 where all are tetrahedra), triangles (of the
+ *                    surface), cells (where not all elements are hexahedra, or tetrahedra:
+ *                    XDMF's list of mixed cells);
  *                    attributes: material, reference_step and so on
  *   /solids/NAME/nodes/     id, position and those of snapshot_node_fields[] that were asked
  *                    for, by node
@@ -163,6 +165,9 @@ void snapshot_put(struct table *table, int64_t i, int column, const void *values
 int snapshot_column(const struct table *table, const char *name);
 /* The numbers of a column of record i, as doubles.  Local. */
 void snapshot_get(const struct table *table, int64_t i, int column, double *values);
+/* Corners of an element; is it one of a shell or membrane?  Local. */
+int snapshot_n_corners(const struct snapshot_solid *solid, int64_t element);
+bool snapshot_is_sheet(const struct snapshot_solid *solid, int64_t element);
 
 /* Writes arranged tables and bodies into the folder, over a snapshot of the same step; says
  * for each body where its mesh is.  Returns REPORT_FINISHED, or REPORT_STORAGE with the reason

@@ -49,5 +49,6 @@ compare mixed mixed
 compare "mixed without ledger" mixed --set contact.ledger=false
 compare machines machines
 compare solids deform
+compare shells sheets
 compare "bodies that touch" slide
 compare periodic periodic

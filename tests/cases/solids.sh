@@ -133,3 +133,13 @@ tremie 2 run "$scenes/dents.yaml" --out folded --set watch.hourglass=0.02 || sta
 says "hourglass modes at step"
 says "most in element"
 result "energy in hourglass modes"
+
+timeout "$patience" "$bin/tremie" check "$scenes/odd_sheets.yaml" > said 2> warned || why+=" odd sheets are refused;"
+says "body      thick: shell, ore, 16 quads, 25 nodes, mass 710.1 kg"
+cat warned > said
+says "body 'thick': it is 0.3 to 0.3 m thick and 1.41 m large; is the unit of its thickness right?"
+says "body 'thick': element 1 at (-0.375, -0.375, -1) m is 1.2 times as thick as wide;"
+says "body 'thin': it is 1e-06 to 1e-06 m thick and 1.41 m large; is the unit of its thickness right?"
+says "body 'warped': element 1 at (0.5, 0.5, 2.075) m is warped by 0.29 of its width;"
+[ "$(wc -l < warned)" = 4 ] || why+=" there are not 4 warnings;"
+result "thick, thin and warped sheets"
