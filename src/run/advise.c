@@ -449,14 +449,16 @@ static double worst_error(const struct verdict *verdict, enum job_model model)
 
 /* --------------------------------------------------------------------------------- cost */
 
-/* The step that all else than this body allows [s]. */
-static double step_without(const struct subject *subject, const struct bodies *bodies,
-                           const struct materials *materials,
-                           const struct limits_spheres *spheres)
+/* What a body as it is, or all spheres, allow of the step, and what they cost. */
+struct share {
+    double step, seconds; /* infinite where it sets no limit [s]; a step [s] */
+};
+
+/* As a step that is found by itself would be. */
+static double step_of_spheres(const struct job *job, const struct materials *materials,
+                              const struct limits_spheres *spheres)
 {
-    const struct job *job = subject->job;
-    struct limits_spheres sizes = *spheres;
-    bool deform = false;
+    struct limits_spheres sizes = *spheres; /* a copy in which sizes are noted */
     sizes.sizes = array_allocate((size_t)spheres->n_materials, sizeof *sizes.sizes);
     struct limits limits = limits_nothing(&sizes);
     for (int m = 0; m < 2 * spheres->n_materials; m++) {
@@ -466,17 +468,36 @@ static double step_without(const struct subject *subject, const struct bodies *b
         if (of->most > 0.0)
             limits_add(&limits, job, materials, &sphere);
     }
-    double step = limits.rayleigh < 1e299 ? limits_step(&limits, job->time.safety) : 1e300;
-    for (int b = 0; b < job->n_bodies; b++) {
-        deform = deform || job_deforms(&job->bodies[b]);
-        if (b == subject->b || !job_deforms(&job->bodies[b]))
-            continue;
-        const double met = solid_step_with_contacts(job, bodies, materials, spheres, b).step;
-        step = SOLID_STEP_SHARE * met < step ? SOLID_STEP_SHARE * met : step;
-    }
     free(sizes.sizes);
-    const bool own = !deform || step >= 1e300 || job->time.step > step; /* as asked for */
-    return own ? job->time.step : step;
+    return limits.rayleigh < 1e299 ? limits_step(&limits, job->time.safety) : (double)INFINITY;
+}
+
+static struct share share_of_body(const struct job *job, const struct bodies *bodies,
+                                  const struct materials *materials,
+                                  const struct limits_spheres *spheres, int b)
+{
+    if (!job_deforms(&job->bodies[b]))
+        return (struct share){(double)INFINITY, 0.0};
+    return (struct share){SOLID_STEP_SHARE *
+                              solid_step_with_contacts(job, bodies, materials, spheres, b).step,
+                          solid_survey_cost_of(&job->bodies[b]).seconds};
+}
+
+/* All but body b: of all bodies, and last of the spheres. */
+static struct share share_without(const struct job *job, const struct share *shares, int b)
+{
+    struct share all = {(double)INFINITY, 0.0};
+    bool deform = false;
+    for (int k = 0; k <= job->n_bodies; k++) {
+        deform = deform || (k < job->n_bodies && job_deforms(&job->bodies[k]));
+        if (k == b)
+            continue;
+        all.step = shares[k].step < all.step ? shares[k].step : all.step;
+        all.seconds += shares[k].seconds;
+    }
+    if (!deform || isinf(all.step) || job->time.step > all.step)
+        all.step = job->time.step; /* as asked for */
+    return all;
 }
 
 /* Width of an element that shows how the panel yields and, of a shell, how waves run off. */
@@ -557,26 +578,16 @@ static struct price price_as_it_is(const struct subject *subject, double *second
     return (struct price){.n_elements = cost.n_elements, .step = subject->job->time.step};
 }
 
-/* What the bodies cost that deform besides this, a step [s]. */
-static double seconds_of_others(const struct subject *subject)
-{
-    double seconds = 0.0;
-    for (int b = 0; b < subject->job->n_bodies; b++)
-        if (b != subject->b && job_deforms(&subject->job->bodies[b]))
-            seconds += solid_survey_cost_of(&subject->job->bodies[b]).seconds;
-    return seconds;
-}
-
 static struct price price_of(const struct subject *subject, const struct load *load,
-                             enum job_model model, double step, double seconds_a_step)
+                             enum job_model model, const struct share *others)
 {
     double seconds;
     const bool is_it = model == subject->body->model && model != JOB_MODEL_RIGID;
     struct price price = is_it ? price_as_it_is(subject, &seconds)
                                : price_of_elements(subject, load, model, &seconds);
     if (!is_it)
-        price.step = step < price.step ? step : price.step;
-    price.seconds = subject->job->time.end / price.step * (seconds_a_step + seconds);
+        price.step = others->step < price.step ? others->step : price.step;
+    price.seconds = subject->job->time.end / price.step * (others->seconds + seconds);
     return price;
 }
 
@@ -699,7 +710,7 @@ static void say_advice(const struct subject *subject, const struct verdict *verd
 }
 
 static void say_models(const struct subject *subject, const struct load *load,
-                       const struct verdict *verdict, double step, double seconds)
+                       const struct verdict *verdict, const struct share *others)
 {
     struct price prices[N_MODELS] = {{0.0, 0.0, 0.0, 0.0}};
     enum job_model best = JOB_MODEL_SOLID;
@@ -708,7 +719,7 @@ static void say_models(const struct subject *subject, const struct load *load,
     for (int k = 0; k < N_MODELS; k++) {
         const enum job_model m = ORDER[k];
         if (verdict->fits[m])
-            prices[m] = price_of(subject, load, m, step, seconds);
+            prices[m] = price_of(subject, load, m, others);
         say_row(verdict, m, &prices[m], &prices[JOB_MODEL_RIGID]);
     }
     for (int k = N_MODELS - 1; k >= 0; k--) {
@@ -754,8 +765,8 @@ static void warn_of_thickness(const struct subject *subject, const struct load *
                     name, t, strain);
 }
 
-static void advise_body(const struct subject *subject, const struct load *load, double step,
-                        double seconds)
+static void advise_body(const struct subject *subject, const struct load *load,
+                        const struct share *others)
 {
     struct verdict verdict = {.blow = 0.0};
     if (subject->is_wall)
@@ -764,7 +775,7 @@ static void advise_body(const struct subject *subject, const struct load *load, 
         judge_block(&verdict, subject, load);
     say_subject(subject);
     say_load(subject, load, &verdict);
-    say_models(subject, load, &verdict, step, seconds);
+    say_models(subject, load, &verdict, others);
     warn_of_thickness(subject, load, verdict.blow);
 }
 
@@ -772,9 +783,15 @@ void advise_print(const struct job *job, const struct bodies *bodies,
                   const struct materials *materials, const struct limits_spheres *spheres,
                   const struct advise_cloud *cloud)
 {
+    struct share *shares = array_allocate((size_t)job->n_bodies + 1, sizeof *shares);
+    for (int b = 0; b < job->n_bodies; b++)
+        shares[b] = share_of_body(job, bodies, materials, spheres, b);
+    shares[job->n_bodies] =
+        (struct share){step_of_spheres(job, materials, spheres), cloud->seconds};
     for (int b = 0; b < job->n_bodies; b++) {
         const struct subject subject = subject_of(job, bodies, b, cloud);
         const struct load load = load_of(&subject, materials, spheres, cloud);
+        const struct share others = share_without(job, shares, b);
         if (!subject.is_known)
             report_say("advise    %s: nothing can be said, for how thick it is is not known; "
                        "give bodies.%d.thickness",
@@ -782,7 +799,7 @@ void advise_print(const struct job *job, const struct bodies *bodies,
         else if (!(load.strike.force > 0.0))
             report_say("advise    %s: no sphere meets it", job->bodies[b].name);
         else
-            advise_body(&subject, &load, step_without(&subject, bodies, materials, spheres),
-                        cloud->seconds + seconds_of_others(&subject));
+            advise_body(&subject, &load, &others);
     }
+    free(shares);
 }
