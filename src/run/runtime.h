@@ -33,10 +33,9 @@ struct runtime_sizes {
     int64_t n_owned, n_ghosts, n_internal, n_interfacial, n_candidates, n_contacts;
     int64_t n_spheres; /* in the run */
     int64_t n_nodes, n_copies,
-        n_elements; /* of bodies that deform: moved, not moved, computed */
-    int64_t weight; /* see redistribute_weight() [ns] */
-    double
-        imbalance; /* of the time that ranks worked, see balance.h; 1 before the first verdict */
+        n_elements;   /* of bodies that deform: moved, not moved, computed */
+    int64_t weight;   /* see redistribute_weight() [ns] */
+    double imbalance; /* largest over mean working time at the last verdict; 1 before it */
 };
 
 struct runtime {
