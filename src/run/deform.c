@@ -446,26 +446,25 @@ void deform_energies(struct simulation *sim, struct solid_energies *energies)
     }
 }
 
-/* Of one body.  Several elements may allow as little: the first is named. */
+/* Of one body.  Several elements may allow as little: where it is too little the first is
+ * found. */
 static struct deform_limit find_limit(const struct simulation *sim, int k, bool touched)
 {
     const struct deform_body *deform = &sim->deform.list[k];
-    struct deform_limit limit = {(double)INFINITY, deform->body, -1, -1};
     struct node_springs springs;
     node_springs_find(&springs, sim, k);
-    if (springs.any || !touched) {
-        node_springs_slow(&springs, sim, k, sim->deform.substeps);
-        const struct solid_limits own = (touched ? solid_limits_touched : solid_limits_find)(
-            &deform->solid, springs.stiffness, springs.damping);
-        limit.step = sim->deform.substeps * own.step;
-        comm_min(sim->comm, &limit.step, 1);
-        const bool is_least = own.element >= 0 && sim->deform.substeps * own.step == limit.step;
+    node_springs_slow(&springs, sim, k, sim->deform.substeps);
+    const struct solid_limits own = (touched ? solid_limits_touched : solid_limits_find)(
+        &deform->solid, springs.stiffness, springs.damping);
+    const double step = sim->deform.substeps * own.step;
+    struct deform_limit limit = {step, deform->body, -1, -1};
+    comm_min(sim->comm, &limit.step, 1);
+    if (sim->dt > sim->job->watch.step * limit.step) {
+        const bool is_least = own.element >= 0 && step == limit.step;
         double first = is_least ? own.element : (double)INFINITY;
         comm_min(sim->comm, &first, 1);
-        if (is_least && own.element == first) {
-            limit.element = own.element;
-            limit.node = own.node;
-        }
+        limit.element = is_least && own.element == first ? own.element : -1;
+        limit.node = limit.element >= 0 ? own.node : -1;
     }
     node_springs_clear(&springs);
     return limit;
@@ -474,11 +473,19 @@ static struct deform_limit find_limit(const struct simulation *sim, int k, bool 
 struct deform_limit deform_critical_step(const struct simulation *sim, bool touched)
 {
     struct deform_limit least = {(double)INFINITY, -1, -1, -1};
+    double *touches = array_allocate((size_t)sim->deform.n, sizeof *touches);
+    if (touched) {
+        node_springs_touched(sim, touches);
+        comm_max(sim->comm, touches, sim->deform.n);
+    }
     for (int k = 0; k < sim->deform.n; k++) {
+        if (touched && !(touches[k] > 0.0))
+            continue;
         const struct deform_limit limit = find_limit(sim, k, touched);
         if (limit.step < least.step)
             least = limit;
     }
+    free(touches);
     return least;
 }
 

@@ -85,11 +85,10 @@ struct deform_sizes deform_sizes(const struct deform *deform);
 void deform_energies(struct simulation *sim, struct solid_energies *energies);
 /* What the elements as they are allow of the step, with the contacts that touch now. */
 struct deform_limit {
-    double step; /* infinite without any [s] */
-    int body;    /* whose; -1: none */
-    int element,
-        node; /* that allows no more, and its corner with contacts, if one is the cause;
-                          -1: on another rank, or none */
+    double step;       /* infinite without any [s] */
+    int body;          /* whose; -1: none */
+    int element, node; /* where it is too little for the job, who allows no more: an element and
+                          its corner with contacts; -1: none, or on another rank */
 };
 /* Of those elements alone that have contacts, if `touched`.  Collective. */
 struct deform_limit deform_critical_step(const struct simulation *sim, bool touched);

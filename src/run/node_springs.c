@@ -141,7 +141,7 @@ void node_springs_find(struct node_springs *springs, const struct simulation *si
     if (all.n > 1)
         qsort(all.list, (size_t)all.n, sizeof *all.list, compare_entries);
     *springs = (struct node_springs){array_allocate(n, sizeof *springs->stiffness),
-                                     array_allocate(n, sizeof *springs->damping), all.n > 0};
+                                     array_allocate(n, sizeof *springs->damping)};
     for (int k = 0, end; k < all.n; k = end) {
         struct exact_sum sums[2] = {{{0}, 0, 0}};
         for (end = k; end < all.n && all.list[end].node == all.list[k].node; end++) {
@@ -162,6 +162,24 @@ void node_springs_slow(const struct node_springs *springs, const struct simulati
         springs->stiffness[i] *= (double)n * n;
         springs->damping[i] *= n;
     }
+}
+
+void node_springs_touched(const struct simulation *sim, double *touched)
+{
+    const struct facet_contacts *lists[2] = {&sim->facets, &sim->touch.contacts};
+    memset(touched, 0, (size_t)sim->deform.n * sizeof *touched);
+    for (int l = 0; l < (sim->touch.n_balls > 0 ? 2 : 1); l++)
+        for (int k = 0; k < lists[l]->n; k++) {
+            const struct facet_contact *contact = &lists[l]->list[k];
+            const int ball = l == 1 ? sim->touch.owned[contact->sphere] : -1;
+            for (int b = 0; facet_contact_touched(contact) && b < sim->deform.n; b++) {
+                const struct deform_body *deform = &sim->deform.list[b];
+                const int own = ball - deform->first_ball;
+                if (contact->body == deform->body ||
+                    (ball >= 0 && own >= 0 && own < deform->n_balls))
+                    touched[b] = 1.0;
+            }
+        }
 }
 
 void node_springs_clear(struct node_springs *springs)

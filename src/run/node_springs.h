@@ -5,21 +5,20 @@
 #ifndef TREMIE_RUN_NODE_SPRINGS_H
 #define TREMIE_RUN_NODE_SPRINGS_H
 
-#include <stdbool.h>
-
 struct simulation;
 
 /* Of each node, sums over the contacts that touch now. */
 struct node_springs {
     double *stiffness; /* [N/m] */
     double *damping;   /* [kg/s] */
-    bool any;          /* contact touches, on any rank */
 };
 
+/* Which of the bodies that deform have contacts here that touch: 1, else 0.  Local. */
+void node_springs_touched(const struct simulation *sim, double *touched);
 /* Of all nodes of a body among those that deform.  Collective. */
 void node_springs_find(struct node_springs *springs, const struct simulation *sim, int deform);
 /* As elements feel them that take n steps in one of the contacts: such a step is stable with
- * them if the contacts' step is, with ω² = λ/n² + k/m of an element's λ (12.20). */
+ * them if the contacts' step is, with ω² = λ/n² + k/m of an element's λ (12.22). */
 void node_springs_slow(const struct node_springs *springs, const struct simulation *sim,
                        int deform, int n);
 void node_springs_clear(struct node_springs *springs);

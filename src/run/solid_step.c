@@ -31,6 +31,7 @@ struct ground {
     const struct solid_mesh *mesh;
     struct solid_mesh own;       /* of the mesh, where none is kept */
     double *mass;                /* [kg] */
+    bool *on_surface;            /* nodes; NULL: all elements count, not only those there */
     double *stiffness, *damping; /* [N/m], [kg/s]; NULL: without contacts */
 };
 
@@ -105,6 +106,7 @@ static void ground_init(struct ground *ground, const struct job *job, int b)
 static void ground_clear(struct ground *ground)
 {
     free(ground->mass);
+    free(ground->on_surface);
     free(ground->stiffness);
     free(ground->damping);
     solid_mesh_clear(&ground->own);
@@ -126,6 +128,15 @@ static int worst_corner(const struct ground *ground, int e, const double *of_nod
     return worst;
 }
 
+static bool counts(const struct ground *ground, int e)
+{
+    const int *corners = ground->mesh->elements[e];
+    bool found = ground->on_surface == NULL;
+    for (int c = 0; !found && c < solid_mesh_n_corners(corners); c++)
+        found = ground->on_surface[corners[c]];
+    return found;
+}
+
 /* The element that allows least, as solid_limits_find() and node_springs_slow() in a run. */
 static struct solid_step find_least(const struct ground *ground)
 {
@@ -133,6 +144,8 @@ static struct solid_step find_least(const struct ground *ground)
     struct solid_step least = {.step = (double)INFINITY, .element = -1, .node = -1};
     for (int e = 0; e < ground->mesh->n_elements; e++) {
         double stiffness, damping;
+        if (!counts(ground, e))
+            continue;
         const struct solid_element_load load = load_of(ground, e);
         const int node = worst_corner(ground, e, ground->stiffness, &stiffness);
         (void)worst_corner(ground, e, ground->damping, &damping);
@@ -401,6 +414,37 @@ static void add_spheres(const struct ground *ground, const struct surface *surfa
     free(most);
 }
 
+/* Where contacts are. */
+static void look_at_surface(struct ground *ground, const struct surface *surface)
+{
+    ground->on_surface =
+        array_allocate((size_t)ground->mesh->n_nodes, sizeof *ground->on_surface);
+    for (int v = 0; v < surface->n; v++)
+        ground->on_surface[surface->nodes[v]] = true;
+}
+
+static void add_springs(struct ground *ground)
+{
+    const size_t n = (size_t)ground->mesh->n_nodes;
+    ground->stiffness = array_allocate(n, sizeof *ground->stiffness);
+    ground->damping = array_allocate(n, sizeof *ground->damping);
+}
+
+struct solid_step solid_step_touching(const struct job *job, const struct bodies *bodies, int b)
+{
+    struct ground ground;
+    struct surface surface;
+    ground_init(&ground, job, b);
+    surface_init(&surface, &ground, &bodies->list[b].mesh);
+    add_springs(&ground);
+    add_own_balls(&ground, &surface, b);
+    look_at_surface(&ground, &surface);
+    const struct solid_step least = find_least(&ground);
+    surface_clear(&surface);
+    ground_clear(&ground);
+    return least;
+}
+
 struct solid_step solid_step_with_contacts(const struct job *job, const struct bodies *bodies,
                                            const struct materials *materials,
                                            const struct limits_spheres *spheres, int b)
@@ -410,13 +454,14 @@ struct solid_step solid_step_with_contacts(const struct job *job, const struct b
     bool of_spheres = false, of_bodies = false;
     ground_init(&ground, job, b);
     surface_init(&surface, &ground, &bodies->list[b].mesh);
-    ground.stiffness = array_allocate((size_t)ground.mesh->n_nodes, sizeof *ground.stiffness);
-    ground.damping = array_allocate((size_t)ground.mesh->n_nodes, sizeof *ground.damping);
+    add_springs(&ground);
     add_own_balls(&ground, &surface, b);
     add_others_balls(&ground, &surface, bodies, b);
     add_yielding(&ground, &surface, bodies, b);
     if (spheres != NULL)
         add_spheres(&ground, &surface, materials, spheres);
+    else
+        look_at_surface(&ground, &surface);
     struct solid_step least = find_least(&ground);
     for (int k = 0; k < job->n_bodies; k++)
         of_bodies = of_bodies || meets(job, b, k) || meets(job, k, b);
@@ -446,29 +491,28 @@ static double flow_share(double flow)
     return share > LEAST ? share : LEAST;
 }
 
-static double find_safe(const struct job *job, const struct bodies *bodies,
-                        const struct materials *materials, const struct limits_spheres *spheres,
-                        bool flows)
+double solid_step_safe(const struct job *job, const struct bodies *bodies)
 {
     double least = (double)INFINITY;
     for (int b = 0; b < job->n_bodies; b++) {
         if (!job_deforms(&job->bodies[b]))
             continue;
-        const double step = solid_step_with_contacts(job, bodies, materials, spheres, b).step;
-        const double share = flows ? flow_share(solid_step_flow(job, &job->bodies[b])) : 1.0;
-        least = share * step < least ? share * step : least;
+        const double step = solid_step_with_contacts(job, bodies, NULL, NULL, b).step;
+        least = step < least ? step : least;
     }
     return SOLID_STEP_SHARE * least;
-}
-
-double solid_step_safe(const struct job *job, const struct bodies *bodies,
-                       const struct materials *materials, const struct limits_spheres *spheres)
-{
-    return find_safe(job, bodies, materials, spheres, false);
 }
 
 double solid_step_auto(const struct job *job, const struct bodies *bodies,
                        const struct materials *materials, const struct limits_spheres *spheres)
 {
-    return find_safe(job, bodies, materials, spheres, true);
+    double least = (double)INFINITY;
+    for (int b = 0; b < job->n_bodies; b++) {
+        if (!job_deforms(&job->bodies[b]))
+            continue;
+        const double step = flow_share(solid_step_flow(job, &job->bodies[b])) *
+                            solid_step_with_contacts(job, bodies, materials, spheres, b).step;
+        least = step < least ? step : least;
+    }
+    return SOLID_STEP_SHARE * least;
 }

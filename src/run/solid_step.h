@@ -33,15 +33,19 @@ struct solid_step {
 
 /* Of the elements of body b, which is a solid, without contacts.  Local. */
 struct solid_step solid_step_alone(const struct job *job, int b);
-/* With those that may be expected; `spheres` NULL: of bodies alone.  Local. */
+/* Of those at its surface as its own nodes touch bodies, whichever these are.  Local. */
+struct solid_step solid_step_touching(const struct job *job, const struct bodies *bodies,
+                                      int b);
+/* With all contacts that may be expected; `spheres` NULL: of bodies alone, and of elements at
+ * the surface.  Local. */
 struct solid_step solid_step_with_contacts(const struct job *job, const struct bodies *bodies,
                                            const struct materials *materials,
                                            const struct limits_spheres *spheres, int b);
-/* What is safe of the least of these, of all solids, as long as none flows much; infinite
- * without any [s].  Local. */
-double solid_step_safe(const struct job *job, const struct bodies *bodies,
-                       const struct materials *materials, const struct limits_spheres *spheres);
-/* What `step: auto` takes: less where a solid will flow.  (12.21)  Local. */
+/* What is safe as bodies touch, of all solids' elements at the surface, as long as none flows
+ * much; infinite without any [s].  Local. */
+double solid_step_safe(const struct job *job, const struct bodies *bodies);
+/* What `step: auto` takes of the least of all contacts: less where a solid will flow.  (12.21)
+ * Local. */
 double solid_step_auto(const struct job *job, const struct bodies *bodies,
                        const struct materials *materials, const struct limits_spheres *spheres);
 

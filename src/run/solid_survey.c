@@ -322,11 +322,6 @@ static void print_step(const struct job *job, const struct solid_mesh *mesh, int
                met.of_spheres ? "spheres" : "", met.of_spheres && met.of_bodies ? " and " : "",
                met.of_bodies ? "bodies" : "", solid_quality_node_number(mesh, met.node),
                element_name(mesh, met.element, name), met.step, step / met.step);
-    if (met.of_spheres && step <= alone.step && step > job->watch.step * met.step)
-        report_warn(
-            "body '%s': time.step is about %.3g of what its nodes allow as spheres strike "
-            "them and rest on them; the run stops if it is too much",
-            body->name, step / met.step);
 }
 
 /* "64 hexahedra, 12 quads" */
@@ -519,7 +514,7 @@ static void warn_of_step(const struct job *job, const struct bodies *bodies,
 {
     const struct job_body *body = &job->bodies[b];
     const struct solid_step alone = solid_step_alone(job, b);
-    const struct solid_step met = solid_step_with_contacts(job, bodies, NULL, NULL, b);
+    const struct solid_step met = solid_step_touching(job, bodies, b);
     const double step = job->time.step;
     char name[TEXT];
     if (step > alone.step)
@@ -533,7 +528,7 @@ static void warn_of_step(const struct job *job, const struct bodies *bodies,
             "safe",
             body->name, step / met.step, solid_quality_node_number(mesh, met.node),
             element_name(mesh, met.element, name),
-            critical_step_round_down(solid_step_safe(job, bodies, NULL, NULL)));
+            critical_step_round_down(solid_step_safe(job, bodies)));
 }
 
 void solid_survey_warn(const struct job *job, const struct bodies *bodies, int b)

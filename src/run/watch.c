@@ -379,7 +379,7 @@ void watch_elements(struct watch *watch, const struct simulation *sim)
 {
     if (sim->deform.n == 0)
         return;
-    watch->doubts_nodes = sim->dt > solid_step_safe(sim->job, &sim->bodies, NULL, NULL);
+    watch->doubts_nodes = sim->dt > solid_step_safe(sim->job, &sim->bodies);
     watch_solids(watch, sim, false);
 }
 
