@@ -47,8 +47,9 @@ struct body {
     int material;
     struct mesh mesh;
     bool moves;
-    int n_motions; /* prescribed, in the order in which they act; of a body that deforms those of
-                      the first of its sets that follows some, which its frame goes by */
+    /* Prescribed, in the order in which they act; of a body that deforms those of the first of
+     * its sets that follows some, which its frame goes by. */
+    int n_motions;
     struct job_motion *motions;
     struct rigid *rigid;    /* of a body that forces move, else NULL */
     struct body_skin *skin; /* of a body that deforms, else NULL */

@@ -61,26 +61,50 @@ static bool is_at_rest(const struct job_body *body)
            !body->comes_and_goes;
 }
 
-/* A job's text with this body alone. */
-static char *text_with(const struct job *job, const struct job_body *body, int material)
+/* A job's text with this body alone, which names materials by numbers that are the job's at
+ * material[]. */
+static char *text_with(const struct job *job, const struct job_body *body, const int *material)
 {
+    const int n = body->solid.n_shells;
     struct job_body only = *body;
     struct job one = *job;
-    only.material = material;
+    only.material = material[body->material];
+    only.solid.shells = array_allocate((size_t)n, sizeof *only.solid.shells);
+    for (int k = 0; k < n; k++) {
+        only.solid.shells[k] = body->solid.shells[k];
+        if (only.solid.shells[k].has_material)
+            only.solid.shells[k].material = material[only.solid.shells[k].material];
+    }
     one.n_bodies = 1;
     one.bodies = &only;
-    return job_write(&one);
+    char *text = job_write(&one);
+    free(only.solid.shells);
+    return text;
+}
+
+/* Has the job all that the body is made of? */
+static bool is_known(const struct job_body *body, const int *material)
+{
+    bool known = material[body->material] >= 0;
+    for (int k = 0; k < body->solid.n_shells; k++)
+        known = known && (!body->solid.shells[k].has_material ||
+                          material[body->solid.shells[k].material] >= 0);
+    return known;
 }
 
 /* Is it the same body, as far as contacts with it remember? */
-static bool is_same_body(const struct job *to, const struct job_body *was, int material,
+static bool is_same_body(const struct job *to, const struct job_body *was, const int *material,
                          const struct job_body *now)
 {
-    if (strcmp(was->name, now->name) != 0 || material != now->material || !is_at_rest(was) ||
-        !is_at_rest(now))
+    if (strcmp(was->name, now->name) != 0 || !is_known(was, material) ||
+        material[was->material] != now->material || !is_at_rest(was) || !is_at_rest(now))
         return false;
-    char *before = text_with(to, was, material), *after = text_with(to, now, material);
+    int *own = array_allocate((size_t)to->n_materials, sizeof *own);
+    for (int m = 0; m < to->n_materials; m++)
+        own[m] = m;
+    char *before = text_with(to, was, material), *after = text_with(to, now, own);
     const bool same = strcmp(before, after) == 0;
+    free(own);
     free(before);
     free(after);
     return same;
@@ -92,8 +116,7 @@ static int *match_bodies(const struct job *from, const struct job *to, const int
     for (int b = 0; b < from->n_bodies; b++) {
         match[b] = -1;
         for (int k = 0; k < to->n_bodies; k++)
-            if (is_same_body(to, &from->bodies[b], material[from->bodies[b].material],
-                             &to->bodies[k]))
+            if (is_same_body(to, &from->bodies[b], material, &to->bodies[k]))
                 match[b] = k;
     }
     return match;
