@@ -26,7 +26,7 @@ enum solid_energy {
     SOLID_ENERGY_GRAVITY,
     SOLID_ENERGY_SUPPORTS,
     SOLID_ENERGY_BACKGROUND, /* taken by mass-proportional damping */
-    SOLID_ENERGY_ELASTIC, /* what stress holds; of sheets also what modes would hold of it if
+    SOLID_ENERGY_ELASTIC,    /* what stress holds; of sheets also what modes would hold of it if
                              they were integrated in full: the share hourglass_stiffness */
     SOLID_ENERGY_PLASTIC,
     SOLID_ENERGY_HOURGLASS,
