@@ -28,20 +28,34 @@ static void square(int n, double (*g)[EIGENVALUE_SIZE], double scale)
     memcpy(g, next, (size_t)n * sizeof *g);
 }
 
-double eigenvalue_largest(int n, const double *matrix)
+/* The root of as high a degree as there have been rounds. */
+static double root_of(const double *scale, int rounds)
+{
+    double root = scale[rounds];
+    for (int round = rounds - 1; round >= 0; round--)
+        root = scale[round] * sqrt(root);
+    return root;
+}
+
+double eigenvalue_bound(int n, const double *matrix, double enough)
 {
     enum { SQUARINGS = 12 };
-    double g[EIGENVALUE_SIZE][EIGENVALUE_SIZE] = {{0.0}}, scale[SQUARINGS + 1], root = 1.0;
+    double g[EIGENVALUE_SIZE][EIGENVALUE_SIZE] = {{0.0}}, scale[SQUARINGS + 1];
     for (int i = 0; i < n; i++)
         memcpy(g[i], matrix + (size_t)i * (size_t)n, (size_t)n * sizeof *matrix);
-    for (int round = 0; round <= SQUARINGS; round++) {
+    for (int round = 0; round < SQUARINGS; round++) {
         scale[round] = trace_of(n, g);
         if (!(scale[round] > 0.0))
             return scale[round]; /* no strain resists, or no number */
-        if (round < SQUARINGS)
-            square(n, g, scale[round]);
+        if (root_of(scale, round) <= enough)
+            return root_of(scale, round);
+        square(n, g, scale[round]);
     }
-    for (int round = SQUARINGS; round >= 0; round--)
-        root = scale[round] * (round == SQUARINGS ? 1.0 : sqrt(root));
-    return root;
+    scale[SQUARINGS] = trace_of(n, g);
+    return scale[SQUARINGS] > 0.0 ? root_of(scale, SQUARINGS) : scale[SQUARINGS];
+}
+
+double eigenvalue_largest(int n, const double *matrix)
+{
+    return eigenvalue_bound(n, matrix, 0.0);
 }

@@ -184,7 +184,8 @@ static void forces_of(enum solid_element_shape shape, const struct shell_geometr
 
 struct solid_element_load shell_element_load(enum solid_element_shape shape, double x[][3],
                                              double mass, double thickness, int layers,
-                                             const struct solid_element_material *material)
+                                             const struct solid_element_material *material,
+                                             double enough)
 {
     enum { N = SHELL_GEOMETRY_STRAINS };
     const struct shell_geometry g = geometry_of(shape, x);
@@ -205,6 +206,6 @@ struct solid_element_load shell_element_load(enum solid_element_shape shape, dou
             matrix[k][l] =
                 sqrt(stiffness[k]) * sqrt(stiffness[l]) * (force + moment / inertia) / share;
         }
-    return (struct solid_element_load){.stretch = eigenvalue_largest(N, &matrix[0][0]),
+    return (struct solid_element_load){.stretch = eigenvalue_bound(N, &matrix[0][0], enough),
                                        .damping = material->damping};
 }

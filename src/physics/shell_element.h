@@ -60,9 +60,11 @@ double shell_element_energy(enum solid_element_shape shape,
                             const struct solid_element_state *state,
                             const struct shell_element_state *shell, int layers,
                             const struct solid_element_material *material);
-/* What it allows of the step, for corners of a third or a quarter of the mass.  (13.16) */
+/* What it allows of the step, for corners of a third or a quarter of the mass, (13.16); or a
+ * bound on the frequency squared that is at most `enough` [1/s2]. */
 struct solid_element_load shell_element_load(enum solid_element_shape shape, double x[][3],
                                              double mass, double thickness, int layers,
-                                             const struct solid_element_material *material);
+                                             const struct solid_element_material *material,
+                                             double enough);
 
 #endif

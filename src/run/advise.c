@@ -538,7 +538,7 @@ static double element_step(const struct subject *subject, const struct load *loa
         solid ? solid_element_load(SOLID_ELEMENT_HEXAHEDRON, x, mass, &material)
               : shell_element_load(model == JOB_MODEL_SHELL ? SOLID_ELEMENT_SHELL_QUAD
                                                             : SOLID_ELEMENT_MEMBRANE_QUAD,
-                                   x, mass, t, LAYERS, &material);
+                                   x, mass, t, LAYERS, &material, 0.0);
     const struct critical_step_contact contact =
         critical_step_contact(load->pair, load->strike.struck, node);
     return solid_element_critical_step(&bound, contact.stiffness[0] / node,

@@ -454,8 +454,9 @@ static struct deform_limit find_limit(const struct simulation *sim, int k, bool 
     struct node_springs springs;
     node_springs_find(&springs, sim, k);
     node_springs_slow(&springs, sim, k, sim->deform.substeps);
-    const struct solid_limits own = (touched ? solid_limits_touched : solid_limits_find)(
-        &deform->solid, springs.stiffness, springs.damping);
+    const struct solid_limits own =
+        solid_limits_within(&deform->solid, springs.stiffness, springs.damping, touched,
+                            deform_dt(&sim->deform, sim->dt) / sim->job->watch.step);
     const double step = sim->deform.substeps * own.step;
     struct deform_limit limit = {step, deform->body, -1, -1};
     comm_min(sim->comm, &limit.step, 1);

@@ -86,7 +86,7 @@ static struct solid_element_load load_of(const struct ground *ground, int e)
     places_of(ground->mesh, e, x);
     return shell_element_is(shape)
                ? shell_element_load(shape, x, mass, ground->mesh->sheets[e].thickness,
-                                    ground->body->sheet.layers, &material)
+                                    ground->body->sheet.layers, &material, 0.0)
                : solid_element_load(shape, x, mass, &material);
 }
 

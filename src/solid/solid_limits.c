@@ -32,31 +32,42 @@ static double largest_share(const struct solid *solid, int element, const double
     return most;
 }
 
-static struct solid_element_load load_of(const struct solid *solid, int element, double x[][3])
+static struct solid_element_load load_of(const struct solid *solid, int element, double x[][3],
+                                         double enough)
 {
     const struct solid_element_material *material = &solid->materials[solid->material[element]];
     const double mass = solid->element_mass[element];
     if (!shell_element_is(solid->shape[element]))
         return solid_element_load(solid->shape[element], x, mass, material);
     return shell_element_load(solid->shape[element], x, mass, solid->shell[element].thickness,
-                              solid->layers, material);
+                              solid->layers, material, enough);
 }
 
-static struct solid_limits find(const struct solid *solid, const double *stiffness,
-                                const double *damping, bool touched)
+/* What an element allows with contacts on its corners; not less than `dt` it may be a bound. */
+static double step_of(const struct solid *solid, int e, double spring, double dashpot,
+                      double dt)
+{
+    double x[SOLID_ELEMENT_CORNERS][3];
+    solid_corner_places(solid, e, x);
+    struct solid_element_load load = load_of(solid, e, x, 1.0 / (dt * dt));
+    const double bound = solid_element_critical_step(&load, spring, dashpot);
+    if (bound >= dt || dt == (double)INFINITY)
+        return bound;
+    load = load_of(solid, e, x, 0.0);
+    return solid_element_critical_step(&load, spring, dashpot);
+}
+
+struct solid_limits solid_limits_within(const struct solid *solid, const double *stiffness,
+                                        const double *damping, bool touched, double dt)
 {
     struct solid_limits limits = {(double)INFINITY, -1, -1};
     for (int e = 0; e < solid->n_elements; e++) {
         if (solid->slot[e] < 0)
             continue;
-        double x[SOLID_ELEMENT_CORNERS][3];
         const double spring = largest_share(solid, e, stiffness);
         if (touched && !(spring > 0.0))
             continue;
-        solid_corner_places(solid, e, x);
-        const struct solid_element_load load = load_of(solid, e, x);
-        const double step =
-            solid_element_critical_step(&load, spring, largest_share(solid, e, damping));
+        const double step = step_of(solid, e, spring, largest_share(solid, e, damping), dt);
         if (step < limits.step)
             limits = (struct solid_limits){step, e, -1};
     }
@@ -68,13 +79,7 @@ static struct solid_limits find(const struct solid *solid, const double *stiffne
 struct solid_limits solid_limits_find(const struct solid *solid, const double *stiffness,
                                       const double *damping)
 {
-    return find(solid, stiffness, damping, false);
-}
-
-struct solid_limits solid_limits_touched(const struct solid *solid, const double *stiffness,
-                                         const double *damping)
-{
-    return find(solid, stiffness, damping, true);
+    return solid_limits_within(solid, stiffness, damping, false, (double)INFINITY);
 }
 
 /* ------------------------------------------------------------------------------- failures */

@@ -21,9 +21,10 @@ struct solid_limits {
  * stiffness [N/m] and damping [kg/s]; NULL: none.  (12.11) to (12.13) */
 struct solid_limits solid_limits_find(const struct solid *solid, const double *stiffness,
                                       const double *damping);
-/* The same of those elements alone that have contacts. */
-struct solid_limits solid_limits_touched(const struct solid *solid, const double *stiffness,
-                                         const double *damping);
+/* The same, if `touched` of those elements alone that have contacts; found in full only where
+ * it is less than dt, else it is at least that. */
+struct solid_limits solid_limits_within(const struct solid *solid, const double *stiffness,
+                                        const double *damping, bool touched, double dt);
 
 enum solid_limits_failure {
     SOLID_LIMITS_FINE,
