@@ -35,5 +35,5 @@ through()
 }
 through 0.1 "sphere 1 at (0.113, 0.021, 0.01825) m and body 'sheet' overlap by 0.109 of a radius, more than watch.overlap = 0.1, and" 320
 result "a sphere goes into a thin shell"
-through 0.9 "and body 'sheet' overlap by 0.508 of a radius, more than the body is thick, so that the sphere goes through; use a" 420
+through 0.9 "and body 'sheet' overlap by 0.509 of a radius, more than the body is thick, so that the sphere goes through; use a" 420
 result "a sphere goes through it"
