@@ -614,8 +614,7 @@ static void end_group(const struct step *step, int begin, int end)
         if (!facet_contact_touched(contact))
             continue;
         const struct body *body = &step->bodies->list[contact->body];
-        if (body->skin != NULL)
-            body_renew_face(body, contact->feature);
+        body_renew_face(body, contact->feature);
         const struct contact_geometry at = contact_geometry_closest(
             &body->mesh, contact->feature, sphere_place(step->spheres, contact->sphere));
         add_contact(step, k, &at, 0.0);
@@ -936,8 +935,7 @@ static double held_energy(const struct spheres *spheres, const struct body *body
     const struct vec3 centre = sphere_place(spheres, i);
     const struct vec3 drift =
         vec3_sub(vec3_of(sphere_velocity(spheres, i)), body_drift(body, centre));
-    if (body->skin != NULL)
-        body_renew_face(body, contact->feature);
+    body_renew_face(body, contact->feature);
     const struct contact_geometry at = contact_geometry_closest(
         &body->mesh, contact->feature, vec3_axpy(centre, -0.5 * dt, drift));
     const double overlap = sphere_radius(spheres, i) - at.distance;

@@ -420,6 +420,13 @@ static inline bool job_deforms(const struct job_body *body)
     return body->model != JOB_MODEL_RIGID;
 }
 
+/* Does an item of a boundary hold or move nodes, not push them? */
+static inline bool job_boundary_holds(const struct job_boundary *asked)
+{
+    return asked->fixed != 0 || asked->n_motions > 0 || asked->n_displacements > 0 ||
+           asked->has_velocity || asked->n_velocities > 0;
+}
+
 /* A part of space with damping of its own, besides the job's. */
 struct job_damping_region {
     struct job_region region;

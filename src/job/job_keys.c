@@ -854,7 +854,7 @@ static const struct schema_key body_keys[] = {
      LIST_AT(struct job_body, solid.thicknesses, solid.n_thicknesses)},
     {"cell", SCHEMA_NUMBER,
      "the width that an element should have at most; when left out each facet is one element. A rigid "
-     "body may have this, thicknesses, sets and boundary as well, so that `model` alone decides",
+     "body may have this, thicknesses, sets and boundary as well, and does not use them",
      .unit = "m", ABOVE_TO(0.0, FAR), .kinds = RIGID | SHEETS,
      GIVEN(struct job_body, sheet.cell), AT(struct job_body, sheet.cell)},
     {"layers", SCHEMA_INT,

@@ -11,6 +11,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/groups.h"
 #include "job/job.h"
 #include "model/geometry.h"
 #include "model/motion.h"
@@ -225,29 +226,19 @@ static void take_motions(struct body *body, const struct job_body *asked)
         copy_motions(body, asked->n_motions, asked->motions);
 }
 
-static int first_of(int *smooth, int face)
-{
-    while (smooth[face] != face)
-        face = smooth[face] = smooth[smooth[face]];
-    return face;
-}
-
 /* Faces that are one smooth part of the surface, by the first of them. */
 static int *find_smooth(const struct mesh *mesh)
 {
-    int *smooth = array_allocate((size_t)mesh->n_faces, sizeof *smooth);
-    for (int f = 0; f < mesh->n_faces; f++)
-        smooth[f] = f;
+    int *smooth = groups_apart(mesh->n_faces);
     for (int e = 0; e < mesh->n_edges; e++) {
         const int *faces = mesh->edges[e].faces;
         if (faces[1] < 0 ||
             vec3_dot(mesh->face_normal[faces[0]], mesh->face_normal[faces[1]]) < SKIN_SMOOTH)
             continue;
-        const int a = first_of(smooth, faces[0]), b = first_of(smooth, faces[1]);
-        smooth[a > b ? a : b] = a < b ? a : b;
+        (void)groups_join(smooth, faces[0], faces[1]);
     }
     for (int f = 0; f < mesh->n_faces; f++)
-        smooth[f] = first_of(smooth, f);
+        smooth[f] = groups_first(smooth, f);
     return smooth;
 }
 
@@ -267,7 +258,7 @@ struct body_skin *body_skin_build(const struct mesh *mesh)
 void body_renew_face(const struct body *body, int face)
 {
     const struct mesh *mesh = &body->mesh;
-    if (body->skin->since[face] == body->skin->now)
+    if (body->skin == NULL || body->skin->since[face] == body->skin->now)
         return;
     for (int k = 0; k < 3; k++) {
         const int v = mesh->faces[face].vertices[k];

@@ -74,7 +74,8 @@ struct body {
                        * move at present [m/s] */
 };
 
-/* Brings a face of a skin to where its corners are, before it is looked at. */
+/* Brings a face of a skin to where its corners are, before it is looked at; those of other
+ * bodies are there. */
 void body_renew_face(const struct body *body, int face);
 
 struct bodies {

@@ -5,6 +5,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/groups.h"
 #include "job/job.h"
 #include "model/geometry.h"
 #include "model/mesh.h"
@@ -17,9 +18,8 @@ struct facet {
 struct edge {
     int ends[2]; /* ascending */
     int n_facets;
-    int like;   /* an edge with as many pieces, the first of them: itself */
-    int pieces; /* of those that are alike */
-    int first;  /* node of those within it */
+    int pieces;
+    int first; /* node of those within it */
 };
 
 struct sheet {
@@ -82,27 +82,13 @@ static void find_edges(struct sheet *sheet)
     sheet->edges = array_allocate((size_t)n, sizeof *sheet->edges);
     for (int k = 0; k < n; k++) {
         if (k == 0 || memcmp(sides[k].ends, sides[k - 1].ends, sizeof sides[k].ends) != 0) {
-            const int e = sheet->n_edges++;
-            sheet->edges[e] = (struct edge){
-                .ends = {sides[k].ends[0], sides[k].ends[1]}, .like = e, .pieces = 1};
+            sheet->edges[sheet->n_edges++] =
+                (struct edge){.ends = {sides[k].ends[0], sides[k].ends[1]}, .pieces = 1};
         }
         sheet->edges[sheet->n_edges - 1].n_facets++;
         sheet->facets[sides[k].facet].edges[sides[k].side] = sheet->n_edges - 1;
     }
     free(sides);
-}
-
-static int like_of(struct edge *edges, int e)
-{
-    while (edges[e].like != e)
-        e = edges[e].like = edges[edges[e].like].like;
-    return e;
-}
-
-static void make_alike(struct edge *edges, int a, int b)
-{
-    const int p = like_of(edges, a), q = like_of(edges, b);
-    edges[p > q ? p : q].like = p > q ? q : p;
 }
 
 /* As many pieces as the longest of those that are alike needs. */
@@ -111,18 +97,19 @@ static void cut_edges(struct sheet *sheet, const struct job_body *body)
     static const double HAIR = 1e-9;
     const double cell = body->sheet.cell, scale = body->scale > 0.0 ? body->scale : 1.0;
     struct edge *edges = sheet->edges;
+    int *alike = groups_apart(sheet->n_edges);
     for (int f = 0; f < sheet->n_facets; f++) {
         const struct facet *facet = &sheet->facets[f];
         if (facet->n == 4) {
-            make_alike(edges, facet->edges[0], facet->edges[2]);
-            make_alike(edges, facet->edges[1], facet->edges[3]);
+            (void)groups_join(alike, facet->edges[0], facet->edges[2]);
+            (void)groups_join(alike, facet->edges[1], facet->edges[3]);
         } else {
-            make_alike(edges, facet->edges[0], facet->edges[1]);
-            make_alike(edges, facet->edges[1], facet->edges[2]);
+            (void)groups_join(alike, facet->edges[0], facet->edges[1]);
+            (void)groups_join(alike, facet->edges[1], facet->edges[2]);
         }
     }
     for (int e = 0; e < sheet->n_edges && cell > 0.0; e++) {
-        struct edge *all = &edges[like_of(edges, e)];
+        struct edge *all = &edges[groups_first(alike, e)];
         const struct vec3 way = vec3_sub(sheet->geometry.vertices[edges[e].ends[1]],
                                          sheet->geometry.vertices[edges[e].ends[0]]);
         const double wanted = scale * vec3_norm(way) / cell - HAIR;
@@ -130,7 +117,8 @@ static void cut_edges(struct sheet *sheet, const struct job_body *body)
             all->pieces++;
     }
     for (int e = 0; e < sheet->n_edges; e++)
-        edges[e].pieces = edges[like_of(edges, e)].pieces;
+        edges[e].pieces = edges[groups_first(alike, e)].pieces;
+    free(alike);
 }
 
 static void sheet_init(struct sheet *sheet, const struct job_body *body)

@@ -9,6 +9,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "base/groups.h"
 #include "base/report.h"
 #include "job/job.h"
 #include "model/solid_mesh.h"
@@ -160,30 +161,15 @@ static double jacobian_of(const struct solid_mesh *mesh, int element, double *as
 
 /* ---------------------------------------------------------------------------------- parts */
 
-static int root_of(int *parents, int k)
-{
-    while (parents[k] != k) {
-        parents[k] = parents[parents[k]];
-        k = parents[k];
-    }
-    return k;
-}
-
 /* Pieces that have no node in common. */
 static int count_parts(const struct solid_mesh *mesh)
 {
-    int *parents = array_allocate((size_t)mesh->n_nodes, sizeof *parents);
+    int *groups = groups_apart(mesh->n_nodes);
     int n = mesh->n_nodes;
-    for (int k = 0; k < mesh->n_nodes; k++)
-        parents[k] = k;
     for (int e = 0; e < mesh->n_elements; e++)
-        for (int c = 1; c < solid_mesh_n_corners(mesh->elements[e]); c++) {
-            const int a = root_of(parents, mesh->elements[e][0]);
-            const int b = root_of(parents, mesh->elements[e][c]);
-            n -= a != b;
-            parents[a > b ? a : b] = a > b ? b : a;
-        }
-    free(parents);
+        for (int c = 1; c < solid_mesh_n_corners(mesh->elements[e]); c++)
+            n -= groups_join(groups, mesh->elements[e][0], mesh->elements[e][c]);
+    free(groups);
     return n;
 }
 

@@ -47,8 +47,9 @@ double eigenvalue_bound(int n, const double *matrix, double enough)
         scale[round] = trace_of(n, g);
         if (!(scale[round] > 0.0))
             return scale[round]; /* no strain resists, or no number */
-        if (root_of(scale, round) <= enough)
-            return root_of(scale, round);
+        const double bound = enough > 0.0 ? root_of(scale, round) : 0.0;
+        if (bound > 0.0 && bound <= enough)
+            return bound;
         square(n, g, scale[round]);
     }
     scale[SQUARINGS] = trace_of(n, g);

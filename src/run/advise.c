@@ -152,9 +152,7 @@ static int find_held(const struct job_body *body, const struct solid_mesh *mesh,
     for (int k = 0; k < body->solid.n_boundary; k++) {
         const struct job_boundary *asked = &body->solid.boundary[k];
         const struct solid_mesh_set *set = solid_mesh_find(mesh, asked->set);
-        const bool holds = asked->fixed != 0 || asked->n_motions > 0 || asked->has_velocity ||
-                           asked->n_velocities > 0 || asked->n_displacements > 0;
-        for (int j = 0; set != NULL && holds && j < set->n_nodes; j++)
+        for (int j = 0; set != NULL && job_boundary_holds(asked) && j < set->n_nodes; j++)
             is_held[set->nodes[j]] = true;
     }
     *held = array_allocate((size_t)mesh->n_nodes, sizeof **held);

@@ -4,7 +4,6 @@
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 #include "base/array.h"
 #include "base/report.h"
@@ -27,8 +26,7 @@ static struct solid_material material_of(const struct job_body *body, bool sheet
                                          const struct job_material *from,
                                          struct solid_yield_point *points)
 {
-    const bool stiff = sheet || body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS;
-    const double held = body->solid.hourglass.coefficient;
+    const struct solid_plan_hourglass held = solid_plan_hourglass(body, sheet);
     points[0] = (struct solid_yield_point){0.0, from->yield};
     for (int k = 0; k < from->n_hardening_table; k++)
         points[k] = (struct solid_yield_point){from->hardening_table[k].strain,
@@ -38,8 +36,8 @@ static struct solid_material material_of(const struct job_body *body, bool sheet
         .young = from->young,
         .poisson = from->poisson,
         .damping = body->solid.damping.stiffness,
-        .hourglass_stiffness = stiff ? held : 0.0,
-        .hourglass_viscosity = stiff ? 0.0 : held,
+        .hourglass_stiffness = held.stiffness,
+        .hourglass_viscosity = held.viscosity,
         .n_yield = from->n_hardening_table > 0 ? from->n_hardening_table : from->yield > 0.0,
         .yield = points,
         .hardening = from->n_hardening_table > 0 ? 0.0 : from->hardening,
@@ -248,8 +246,6 @@ void deform_clear(struct deform *deform, const struct comm *comm)
         deform_skin_clear(&deform->list[k].skin);
         free(deform->list[k].balls);
         free(deform->list[k].inner);
-        free(deform->list[k].held);
-        free(deform->list[k].held_turns);
     }
     comm_mail_clear(&deform->mail);
     free(deform->near);
@@ -326,41 +322,18 @@ void deform_plan(struct simulation *sim)
     sim->balance.busy += timer_now() - began;
 }
 
-/* Contacts push on while elements take their steps: solid_move() forgets what they do. */
-static void hold_contacts(struct deform_body *deform)
-{
-    const size_t n = (size_t)deform->solid.n_nodes;
-    if (deform->held == NULL)
-        deform->held = array_allocate(n, sizeof *deform->held);
-    memcpy(deform->held, deform->solid.contact, n * sizeof *deform->held);
-    if (deform->solid.turns.n_nodes == 0)
-        return;
-    if (deform->held_turns == NULL)
-        deform->held_turns = array_allocate(n, sizeof *deform->held_turns);
-    memcpy(deform->held_turns, deform->solid.turns.contact, n * sizeof *deform->held_turns);
-}
-
-static void push_on(struct deform_body *deform)
-{
-    const size_t n = (size_t)deform->solid.n_nodes;
-    memcpy(deform->solid.contact, deform->held, n * sizeof *deform->held);
-    if (deform->solid.turns.n_nodes > 0)
-        memcpy(deform->solid.turns.contact, deform->held_turns, n * sizeof *deform->held_turns);
-}
-
 static void move_all(struct simulation *sim, int substep)
 {
     const double began = timer_now();
     for (int k = 0; k < sim->deform.n; k++) {
         struct deform_body *deform = &sim->deform.list[k];
-        if (substep > 0) {
-            push_on(deform);
+        const int64_t step = deform_step(&sim->deform, sim->step) + substep;
+        if (substep > 0)
             find_forces(sim, deform, substep);
-        } else if (sim->deform.substeps > 1) {
-            hold_contacts(deform);
-        }
-        solid_move(&deform->solid, deform_step(&sim->deform, sim->step) + substep,
-                   deform_dt(&sim->deform, sim->dt));
+        if (substep + 1 < sim->deform.substeps)
+            solid_move_on(&deform->solid, step, deform_dt(&sim->deform, sim->dt));
+        else
+            solid_move(&deform->solid, step, deform_dt(&sim->deform, sim->dt));
     }
     sim->balance.busy += timer_now() - began;
 }
@@ -453,7 +426,7 @@ static struct deform_limit find_limit(const struct simulation *sim, int k, bool 
     const struct deform_body *deform = &sim->deform.list[k];
     struct node_springs springs;
     node_springs_find(&springs, sim, k);
-    node_springs_slow(&springs, sim, k, sim->deform.substeps);
+    node_springs_slow(&springs, deform->solid.n_nodes, sim->deform.substeps);
     const struct solid_limits own =
         solid_limits_within(&deform->solid, springs.stiffness, springs.damping, touched,
                             deform_dt(&sim->deform, sim->dt) / sim->job->watch.step);

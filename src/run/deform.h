@@ -29,8 +29,6 @@ struct deform_body {
     int n_balls, first_ball; /* counted likewise */
     struct solid_ball *balls;
     int *inner; /* SOLID_BALL_INNER of each: its inner nodes among the skin's points */
-    /* Of nodes with contacts, while elements take several steps: */
-    double (*held)[3], (*held_turns)[3]; /* forces and moments [N], [N m] */
 };
 
 struct deform {

@@ -73,14 +73,6 @@ static struct vec3 vec3_of(const double *lane)
     return (struct vec3){lane[0], lane[1], lane[2]};
 }
 
-static void place_mean(struct mesh *mesh, int v)
-{
-    struct vec3 mean = {0.0, 0.0, 0.0};
-    for (int k = 0; k < 4; k++)
-        mean = vec3_axpy(mean, 0.25, mesh->place[mesh->mean_of[v - mesh->n_corners][k]]);
-    mesh->place[v] = mean;
-}
-
 /* Arms of the sheets that are here. */
 static void turn_arms(const struct deform_body *deform)
 {
@@ -302,8 +294,10 @@ static int *measure(const struct deform_body *deform, const struct comm *comm, i
     return sizes;
 }
 
-static void show(const struct deform_body *deform, const struct comm *comm, struct mesh *mesh)
+static void show(const struct deform_body *deform, const struct comm *comm,
+                 const struct body *body)
 {
+    const struct mesh *mesh = &body->mesh;
     struct vec3 *places = array_allocate((size_t)mesh->n_corners, sizeof *places);
     int *next = array_allocate((size_t)comm->n_ranks, sizeof *next);
     int *sizes = measure(deform, comm, mesh->n_corners, next);
@@ -314,9 +308,9 @@ static void show(const struct deform_body *deform, const struct comm *comm, stru
     comm_gather_parts(comm, places, sizes);
     for (int v = 0; v < mesh->n_corners; v++)
         mesh->place[v] = places[next[deform->share.owner[deform->skin.nodes[v]]]++];
-    for (int v = mesh->n_corners; v < mesh->n_vertices; v++)
-        place_mean(mesh, v);
-    mesh_update(mesh);
+    body->skin->now++;
+    for (int f = 0; f < mesh->n_faces; f++)
+        body_renew_face(body, f);
     free(places);
     free(next);
     free(sizes);
@@ -325,7 +319,7 @@ static void show(const struct deform_body *deform, const struct comm *comm, stru
 void deform_skin_show(struct simulation *sim)
 {
     for (int k = 0; sim->comm->n_ranks > 1 && k < sim->deform.n; k++)
-        show(&sim->deform.list[k], sim->comm, &sim->bodies.list[sim->deform.list[k].body].mesh);
+        show(&sim->deform.list[k], sim->comm, &sim->bodies.list[sim->deform.list[k].body]);
 }
 
 void deform_skin_hide(struct simulation *sim)

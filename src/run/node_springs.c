@@ -92,10 +92,10 @@ static void add_contacts(struct entries *entries, const struct simulation *sim, 
         double yield = sphere_inverse_mass(spheres, i);
         if (!(width > 0.0) || !(meets || is_own))
             continue;
-        if (meets)
+        if (meets) {
             body_renew_face(body, contact->feature);
-        if (meets)
             share = share_of(&body->mesh, contact->feature, sphere_place(spheres, i));
+        }
         for (int m = 0; m < share.n; m++)
             yield +=
                 share.parts[m] * share.parts[m] * body->skin->inverse_mass[share.corners[m]];
@@ -155,10 +155,9 @@ void node_springs_find(struct node_springs *springs, const struct simulation *si
     free(all.list);
 }
 
-void node_springs_slow(const struct node_springs *springs, const struct simulation *sim,
-                       int deform, int n)
+void node_springs_slow(const struct node_springs *springs, int n_nodes, int n)
 {
-    for (int i = 0; n > 1 && i < sim->deform.list[deform].solid.n_nodes; i++) {
+    for (int i = 0; n > 1 && i < n_nodes; i++) {
         springs->stiffness[i] *= (double)n * n;
         springs->damping[i] *= n;
     }

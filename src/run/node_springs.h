@@ -19,8 +19,7 @@ void node_springs_touched(const struct simulation *sim, double *touched);
 void node_springs_find(struct node_springs *springs, const struct simulation *sim, int deform);
 /* As elements feel them that take n steps in one of the contacts: such a step is stable with
  * them if the contacts' step is, with ω² = λ/n² + k/m of an element's λ (12.22). */
-void node_springs_slow(const struct node_springs *springs, const struct simulation *sim,
-                       int deform, int n);
+void node_springs_slow(const struct node_springs *springs, int n_nodes, int n);
 void node_springs_clear(struct node_springs *springs);
 
 #endif

@@ -664,8 +664,7 @@ static void add_supports(struct observe_monitor **monitors, int *n, int *capacit
         char owner[48];
         snprintf(owner, sizeof owner, "body_%d.support_%d", deform->body, s);
         for (int d = 0; d < 3; d++)
-            if (support->kind == SOLID_SUPPORT_MOTION ||
-                (d == support->direction && !support->turns))
+            if (solid_support_pushes(support, d))
                 add_monitor(monitors, n, capacity, &support->force[d], owner, forces[d]);
         if (support->kind != SOLID_SUPPORT_FIXED)
             add_monitor(monitors, n, capacity, &support->work, owner, "work");

@@ -9,6 +9,7 @@
 
 #include "base/array.h"
 #include "base/elementary.h"
+#include "base/groups.h"
 #include "model/mesh.h"
 
 /* Beyond 30 degrees a fold holds; facets of round walls meet at less. */
@@ -47,29 +48,16 @@ static bool goes_on(const struct mesh *mesh, int e)
     return mesh->edges[e].n_faces == 2 && turn_at(mesh, e) < FOLD;
 }
 
-static int first_of(int *same, int f)
-{
-    while (same[f] != f)
-        f = same[f] = same[same[f]];
-    return f;
-}
-
 /* The panel of each face; returns how many there are. */
 static int number_faces(const struct mesh *mesh, int *panel_of)
 {
     int n = 0;
-    int *same = array_allocate((size_t)mesh->n_faces, sizeof *same);
-    for (int f = 0; f < mesh->n_faces; f++)
-        same[f] = f;
-    for (int e = 0; e < mesh->n_edges; e++) {
-        if (!goes_on(mesh, e))
-            continue;
-        const int a = first_of(same, mesh->edges[e].faces[0]),
-                  b = first_of(same, mesh->edges[e].faces[1]);
-        same[a > b ? a : b] = a > b ? b : a;
-    }
+    int *same = groups_apart(mesh->n_faces);
+    for (int e = 0; e < mesh->n_edges; e++)
+        if (goes_on(mesh, e))
+            (void)groups_join(same, mesh->edges[e].faces[0], mesh->edges[e].faces[1]);
     for (int f = 0; f < mesh->n_faces; f++) {
-        const int first = first_of(same, f);
+        const int first = groups_first(same, f);
         panel_of[f] = first == f ? n++ : panel_of[first];
     }
     free(same);

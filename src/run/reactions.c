@@ -27,12 +27,6 @@ static char *plain_name(const char *set)
     return name;
 }
 
-static bool is_support(const struct job_boundary *asked)
-{
-    return asked->fixed != 0 || asked->n_motions > 0 || asked->n_displacements > 0 ||
-           asked->has_velocity || asked->n_velocities > 0;
-}
-
 /* "plate.x_min", or "plate.x_min.3" where an item before item 3 has the name already.  The
  * caller frees it. */
 static char *column_owner(const struct job_body *body, int item)
@@ -41,7 +35,7 @@ static char *column_owner(const struct job_body *body, int item)
     bool taken = false;
     for (int k = 0; k < item && !taken; k++) {
         char *other = plain_name(body->solid.boundary[k].set);
-        taken = is_support(&body->solid.boundary[k]) && strcmp(set, other) == 0;
+        taken = job_boundary_holds(&body->solid.boundary[k]) && strcmp(set, other) == 0;
         free(other);
     }
     char *owner = taken ? array_format("%s.%s.%d", body->name, set, item)
@@ -79,7 +73,7 @@ void reactions_add_columns(const struct simulation *sim, struct series *table)
     for (int k = 0; k < sim->deform.n; k++) {
         const struct job_body *body = &sim->job->bodies[sim->deform.list[k].body];
         for (int item = 0; item < body->solid.n_boundary; item++)
-            if (is_support(&body->solid.boundary[item]))
+            if (job_boundary_holds(&body->solid.boundary[item]))
                 add_columns(table, body, item);
     }
 }
@@ -146,9 +140,8 @@ static int add_values(struct simulation *sim, struct solid *solid, double n_step
     exact_sum_reduce(sim->comm, sums, PARTS * supports->n);
     for (int s = 0; s < supports->n; s++) {
         const struct solid_support *support = &supports->list[s];
-        const bool all = support->kind == SOLID_SUPPORT_MOTION;
         for (int d = 0; d < 3; d++)
-            if (all || (d == support->direction && !support->turns))
+            if (solid_support_pushes(support, d))
                 row[n++] = exact_sum_value(&sums[PARTS * s + d]) / n_steps;
         if (support->kind != SOLID_SUPPORT_FIXED)
             row[n++] = exact_sum_value(&sums[PARTS * s + WORK]);

@@ -42,13 +42,12 @@ static struct solid_element_material material_of(const struct ground *ground, in
     const struct job_body *body = ground->body;
     const struct job_material *from =
         &ground->job->materials[solid_mesh_material(ground->mesh, e, body->material)];
-    const bool stiff = solid_mesh_is_sheet(ground->mesh->elements[e]) ||
-                       body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS;
-    const double held = body->solid.hourglass.coefficient;
+    const struct solid_plan_hourglass held =
+        solid_plan_hourglass(body, solid_mesh_is_sheet(ground->mesh->elements[e]));
     struct solid_element_material material = {.density = from->density,
                                               .damping = body->solid.damping.stiffness,
-                                              .hourglass_stiffness = stiff ? held : 0.0,
-                                              .hourglass_viscosity = stiff ? 0.0 : held};
+                                              .hourglass_stiffness = held.stiffness,
+                                              .hourglass_viscosity = held.viscosity};
     solid_element_elastic(&material, from->young, from->poisson);
     return material;
 }

@@ -137,21 +137,35 @@ static char *name_body(const struct job_body *asked, const struct body *body)
                         slash != NULL ? slash + 1 : asked->file, size.z > wide ? size.z : wide);
 }
 
+/* Spheres of a group that overlap a body's surface or, if `inside`, are in it clear of that;
+ * returns how many, and the first. */
+static int64_t find_spheres(const struct scene *scene, int group,
+                            const struct region_surface *surface, bool inside, int64_t *first)
+{
+    const double limit = scene->job->watch.overlap;
+    const struct packing *packing = packing_of(scene, group);
+    int64_t n = 0;
+    for (int64_t k = 0; k < packing->n; k++) {
+        const struct packing_sphere sphere = packing_get(packing, k);
+        const struct vec3 x = periodic_settled(&scene->periodic, sphere.position);
+        if (inside && !region_surface_holds(surface, x))
+            continue;
+        if (region_surface_is_near(surface, x, sphere.radius * (1.0 - limit)) == inside)
+            continue;
+        *first = n++ == 0 ? k : *first;
+    }
+    return n;
+}
+
 static void check_body(const struct scene *scene, int group, int b, const struct body *body,
                        const struct region_surface *surface, struct mistakes *mistakes)
 {
     const double limit = scene->job->watch.overlap;
-    const struct packing *packing = packing_of(scene, group);
-    int64_t n = 0, first = -1;
-    for (int64_t k = 0; k < packing->n; k++) {
-        const struct packing_sphere sphere = packing_get(packing, k);
-        const struct vec3 x = periodic_settled(&scene->periodic, sphere.position);
-        if (region_surface_is_near(surface, x, sphere.radius * (1.0 - limit)))
-            first = n++ == 0 ? k : first;
-    }
+    int64_t first = -1;
+    const int64_t n = find_spheres(scene, group, surface, false, &first);
     if (n == 0)
         return;
-    const struct packing_sphere sphere = packing_get(packing, first);
+    const struct packing_sphere sphere = packing_get(packing_of(scene, group), first);
     const struct vec3 x = periodic_settled(&scene->periodic, sphere.position);
     const double distance = distance_to(surface, x, sphere.radius);
     char *name = name_body(&scene->job->bodies[b], body);
@@ -168,16 +182,8 @@ static void check_body(const struct scene *scene, int group, int b, const struct
 static void check_inside(const struct scene *scene, int group, const struct body *body,
                          const struct region_surface *surface, struct mistakes *mistakes)
 {
-    const double limit = scene->job->watch.overlap;
-    const struct packing *packing = packing_of(scene, group);
-    int64_t n = 0, first = -1;
-    for (int64_t k = 0; k < packing->n; k++) {
-        const struct packing_sphere sphere = packing_get(packing, k);
-        const struct vec3 x = periodic_settled(&scene->periodic, sphere.position);
-        if (region_surface_holds(surface, x) &&
-            !region_surface_is_near(surface, x, sphere.radius * (1.0 - limit)))
-            first = n++ == 0 ? k : first;
-    }
+    int64_t first = -1;
+    const int64_t n = find_spheres(scene, group, surface, true, &first);
     if (n == 0)
         return;
     char *what =

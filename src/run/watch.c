@@ -177,8 +177,7 @@ static void fill_matrices(const struct simulation *sim, const int *slots,
         const struct facet_contact *contact = &sim->facets.list[k];
         if (!facet_contact_touched(contact) || slots[contact->sphere] < 0)
             continue;
-        if (sim->bodies.list[contact->body].skin != NULL)
-            body_renew_face(&sim->bodies.list[contact->body], contact->feature);
+        body_renew_face(&sim->bodies.list[contact->body], contact->feature);
         const struct vec3 n =
             contact_geometry_closest(&sim->bodies.list[contact->body].mesh, contact->feature,
                                      sphere_place(&sim->spheres, contact->sphere))

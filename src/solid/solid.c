@@ -636,7 +636,7 @@ static void count_work(struct solid *solid, int i, const struct solid_advance *a
     solid_supports_book(&solid->supports, i, advance->support, v, dt);
 }
 
-void solid_move(struct solid *solid, int64_t step, double dt)
+static void move(struct solid *solid, int64_t step, double dt, bool forget)
 {
     const struct pace pace = pace_of(solid, dt);
     solid_supports_set(&solid->supports, step + 1, dt);
@@ -648,8 +648,19 @@ void solid_move(struct solid *solid, int64_t step, double dt)
         count_work(solid, i, &advance, step, dt);
         memcpy(solid_place(solid, i), advance.place, sizeof advance.place);
         memcpy(solid_velocity(solid, i), advance.velocity, sizeof advance.velocity);
-        memset(solid->contact[i], 0, sizeof solid->contact[i]);
+        if (forget)
+            memset(solid->contact[i], 0, sizeof solid->contact[i]);
     }
     if (solid->turns.n_nodes > 0)
-        solid_turns_move(solid, step, dt);
+        solid_turns_move(solid, step, dt, forget);
+}
+
+void solid_move(struct solid *solid, int64_t step, double dt)
+{
+    move(solid, step, dt, true);
+}
+
+void solid_move_on(struct solid *solid, int64_t step, double dt)
+{
+    move(solid, step, dt, false);
 }

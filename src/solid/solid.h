@@ -186,6 +186,8 @@ bool solid_counts(const struct solid *solid, int element);
 bool solid_forces(struct solid *solid, int64_t step, double dt);
 /* From x(n), v(n-1/2) to x(n+1), v(n+1/2), and the work that was done. */
 void solid_move(struct solid *solid, int64_t step, double dt);
+/* The same, but contacts push on: `contact` stays. */
+void solid_move_on(struct solid *solid, int64_t step, double dt);
 
 /* Node i as solid_move() is about to move it. */
 struct solid_advance {

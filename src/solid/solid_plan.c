@@ -1,6 +1,7 @@
 /* See solid_plan.h. */
 #include "solid/solid_plan.h"
 
+#include "job/job.h"
 #include "model/solid_mesh.h"
 
 enum solid_element_shape solid_plan_shape(const struct solid_mesh *mesh, int element)
@@ -11,4 +12,11 @@ enum solid_element_shape solid_plan_shape(const struct solid_mesh *mesh, int ele
     if (mesh->sheets[element].membrane)
         return n == 4 ? SOLID_ELEMENT_MEMBRANE_QUAD : SOLID_ELEMENT_MEMBRANE_TRIANGLE;
     return n == 4 ? SOLID_ELEMENT_SHELL_QUAD : SOLID_ELEMENT_SHELL_TRIANGLE;
+}
+
+struct solid_plan_hourglass solid_plan_hourglass(const struct job_body *body, bool is_sheet)
+{
+    const bool stiff = is_sheet || body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS;
+    const double held = body->solid.hourglass.coefficient;
+    return (struct solid_plan_hourglass){stiff ? held : 0.0, stiff ? 0.0 : held};
 }

@@ -50,6 +50,13 @@ struct solid_supports {
     int (*turn_of_node)[3]; /* of turning about each axis; NULL: no node turns */
 };
 
+/* Does it push nodes along a direction? */
+static inline bool solid_support_pushes(const struct solid_support *support, int direction)
+{
+    return support->kind == SOLID_SUPPORT_MOTION ||
+           (direction == support->direction && !support->turns);
+}
+
 void solid_supports_init(struct solid_supports *supports, int n_nodes);
 void solid_supports_clear(struct solid_supports *supports);
 

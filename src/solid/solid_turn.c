@@ -108,7 +108,7 @@ void solid_turns_support(const struct solid *solid, int i, double dt, double mom
     memcpy(moment, advance.support, sizeof none);
 }
 
-void solid_turns_move(struct solid *solid, int64_t step, double dt)
+void solid_turns_move(struct solid *solid, int64_t step, double dt, bool forget)
 {
     struct solid_turns *turns = &solid->turns;
     const double earlier = step > 0 ? 0.5 : 0.0; /* nothing was done before the start */
@@ -124,6 +124,7 @@ void solid_turns_move(struct solid *solid, int64_t step, double dt)
             solid->work[i][k] += power[k] * dt;
         solid_supports_book_turn(&solid->supports, i, advance.support, w, dt);
         memcpy(spin, advance.spin, sizeof advance.spin);
-        memset(turns->contact[i], 0, sizeof turns->contact[i]);
+        if (forget)
+            memset(turns->contact[i], 0, sizeof turns->contact[i]);
     }
 }

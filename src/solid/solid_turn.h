@@ -7,6 +7,7 @@
 #ifndef TREMIE_SOLID_SOLID_TURN_H
 #define TREMIE_SOLID_SOLID_TURN_H
 
+#include <stdbool.h>
 #include <stdint.h>
 
 #include "physics/solid_element.h"
@@ -28,8 +29,8 @@ void solid_turns_clear(struct solid_turns *turns);
 /* No moments yet. */
 void solid_turns_begin(struct solid_turns *turns);
 /* From the angular velocities at n - 1/2 to those at n + 1/2, and the work that was done;
- * supports are at n + 1 already. */
-void solid_turns_move(struct solid *solid, int64_t step, double dt);
+ * supports are at n + 1 already.  Contacts' moments are cleared if they are to be forgotten. */
+void solid_turns_move(struct solid *solid, int64_t step, double dt, bool forget);
 /* Adds the power of what works on a node that turns as half a step earlier to `power`, of each
  * enum solid_work [W]; returns its kinetic energy in turning [J]. */
 double solid_turns_power(const struct solid *solid, int i, double dt, double power[]);
