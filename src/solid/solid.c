@@ -468,6 +468,7 @@ static void add_shell(struct solid *solid, int e, int n,
 {
     for (int c = 0; c < n; c++) {
         const int i = solid->corners[e][c];
+#pragma GCC unroll 3
         for (int d = 0; d < 3; d++) {
             solid->internal[i][d] -= force->corner[2 * c][d];
             solid->turns.internal[i][d] -= force->corner[2 * c + 1][d];
@@ -527,11 +528,13 @@ static int compute_part(struct solid *solid, int k, int64_t step, double dt, boo
 bool solid_forces(struct solid *solid, int64_t step, double dt)
 {
     bool failed = false;
+    const bool loaded = solid->loads.n > 0; /* else `external` never changes */
     for (int k = 0; k < solid->n_here; k++) {
         memset(solid->internal[solid->here[k]], 0, sizeof *solid->internal);
-        memset(solid->external[solid->here[k]], 0, sizeof *solid->external);
+        if (loaded)
+            memset(solid->external[solid->here[k]], 0, sizeof *solid->external);
     }
-    solid_turns_begin(&solid->turns);
+    solid_turns_begin(&solid->turns, loaded);
     for (int k = 0; k < solid->n_lists;)
         k = compute_part(solid, k, step, dt, &failed);
     solid_loads_apply(solid, (double)step * dt, solid->external);
@@ -543,12 +546,19 @@ bool solid_forces(struct solid *solid, int64_t step, double dt)
 /* What is the same for all nodes: factors of (5.3). */
 struct pace {
     double dt, keep, kick;
+    double earlier; /* share of the velocity before in the one that work is done at */
 };
 
 static struct pace pace_of(const struct solid *solid, double dt)
 {
     const double half = 0.5 * solid->damping * dt, push = 1.0 / (1.0 + half);
-    return (struct pace){dt, (1.0 - half) * push, push * dt};
+    return (struct pace){dt, (1.0 - half) * push, push * dt, 0.5};
+}
+
+static inline bool is_held(const struct solid *solid, int i)
+{
+    const int *held = solid->supports.of_node[i];
+    return (held[0] & held[1] & held[2]) >= 0; /* -1: not held */
 }
 
 /* Velocities of what is held lead to where it is.  (12.15) */
@@ -557,8 +567,6 @@ static void hold(const struct solid *solid, int i, double dt, const double force
 {
     const int *held = solid->supports.of_node[i];
     const double *x = solid_place(solid, i), *v = solid_velocity(solid, i);
-    if (held[0] < 0 && held[1] < 0 && held[2] < 0)
-        return;
     solid_supports_place(&solid->supports, i, solid->reference[i], advance->place);
     for (int k = 0; k < 3; k++) {
         if (held[k] < 0)
@@ -572,21 +580,35 @@ static void hold(const struct solid *solid, int i, double dt, const double force
     }
 }
 
+/* Force on a node along k, without gravity. */
+static inline double force_at(const struct solid *solid, int i, int k)
+{
+    return (solid->internal[i][k] + solid->external[i][k]) + solid->contact[i][k];
+}
+
+/* Its velocity half a step later, if nothing holds it. */
+static inline double velocity_at(const struct solid *solid, int i, int k, double force,
+                                 double per_mass, const struct pace *pace)
+{
+    return solid_velocity(solid, i)[k] * pace->keep +
+           pace->kick * (force * per_mass + solid->gravity[k]);
+}
+
 static struct solid_advance advance_at(const struct solid *solid, int i,
                                        const struct pace *pace)
 {
-    const double *x = solid_place(solid, i), *v = solid_velocity(solid, i);
+    const double *x = solid_place(solid, i);
     const double per_mass = 1.0 / solid->mass[i];
     struct solid_advance advance;
     double force[3];
     for (int k = 0; k < 3; k++) {
-        force[k] = (solid->internal[i][k] + solid->external[i][k]) + solid->contact[i][k];
-        advance.velocity[k] =
-            v[k] * pace->keep + pace->kick * (force[k] * per_mass + solid->gravity[k]);
+        force[k] = force_at(solid, i, k);
+        advance.velocity[k] = velocity_at(solid, i, k, force[k], per_mass, pace);
         advance.place[k] = x[k] + pace->dt * advance.velocity[k];
         advance.support[k] = 0.0;
     }
-    hold(solid, i, pace->dt, force, &advance);
+    if (is_held(solid, i))
+        hold(solid, i, pace->dt, force, &advance);
     return advance;
 }
 
@@ -623,31 +645,65 @@ void solid_velocity_now(const struct solid *solid, int i, double dt, double v[3]
 
 /* Work of a step's forces over the half step before and the one behind it.  (12.14) */
 static void count_work(struct solid *solid, int i, const struct solid_advance *advance,
-                       int64_t step, double dt)
+                       const struct pace *pace)
 {
     const double *before = solid_velocity(solid, i);
-    const double earlier = step > 0 ? 0.5 : 0.0; /* nothing was done before the start */
     double v[3], power[SOLID_N_WORKS];
     for (int k = 0; k < 3; k++)
-        v[k] = earlier * before[k] + 0.5 * advance->velocity[k];
+        v[k] = pace->earlier * before[k] + 0.5 * advance->velocity[k];
     solid_power(solid, i, advance, v, power);
     for (int w = 0; w < SOLID_N_WORKS; w++)
-        solid->work[i][w] += power[w] * dt;
-    solid_supports_book(&solid->supports, i, advance->support, v, dt);
+        solid->work[i][w] += power[w] * pace->dt;
+    solid_supports_book(&solid->supports, i, advance->support, v, pace->dt);
+}
+
+static void move_held(struct solid *solid, int i, const struct pace *pace)
+{
+    const struct solid_advance advance = advance_at(solid, i, pace);
+    count_work(solid, i, &advance, pace);
+    memcpy(solid_place(solid, i), advance.place, sizeof advance.place);
+    memcpy(solid_velocity(solid, i), advance.velocity, sizeof advance.velocity);
+}
+
+/* The same, component by component, where no support has to be known. */
+static void move_free(struct solid *solid, int i, const struct pace *pace)
+{
+    const double mass = solid->mass[i], per_mass = 1.0 / mass;
+    double *x = solid_place(solid, i), *v = solid_velocity(solid, i), *work = solid->work[i];
+    double internal = 0.0, loads = 0.0, contact = 0.0, gravity = 0.0, damping = 0.0;
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++) {
+        const double before = v[k];
+        const double after = velocity_at(solid, i, k, force_at(solid, i, k), per_mass, pace);
+        const double mean = pace->earlier * before + 0.5 * after;
+        internal -= solid->internal[i][k] * mean;
+        loads += solid->external[i][k] * mean;
+        contact += solid->contact[i][k] * mean;
+        gravity += mass * solid->gravity[k] * mean;
+        damping += solid->damping * mass * (0.5 * (before + after)) * mean;
+        x[k] += pace->dt * after;
+        v[k] = after;
+    }
+    work[SOLID_WORK_INTERNAL] += internal * pace->dt;
+    work[SOLID_WORK_LOADS] += loads * pace->dt;
+    work[SOLID_WORK_CONTACT] += contact * pace->dt;
+    work[SOLID_WORK_GRAVITY] += gravity * pace->dt;
+    work[SOLID_WORK_DAMPING] += damping * pace->dt;
 }
 
 static void move(struct solid *solid, int64_t step, double dt, bool forget)
 {
-    const struct pace pace = pace_of(solid, dt);
+    struct pace pace = pace_of(solid, dt);
+    pace.earlier = step > 0 ? 0.5 : 0.0; /* nothing was done before the start */
     solid_supports_set(&solid->supports, step + 1, dt);
     for (int k = 0; k < solid->n_here; k++) {
         const int i = solid->here[k];
         if (!solid->moves[i])
             continue;
-        const struct solid_advance advance = advance_at(solid, i, &pace);
-        count_work(solid, i, &advance, step, dt);
-        memcpy(solid_place(solid, i), advance.place, sizeof advance.place);
-        memcpy(solid_velocity(solid, i), advance.velocity, sizeof advance.velocity);
+        if (is_held(solid, i))
+            move_held(solid, i, &pace);
+        else
+            move_free(solid, i, &pace);
         if (forget)
             memset(solid->contact[i], 0, sizeof solid->contact[i]);
     }

@@ -28,12 +28,13 @@ void solid_turns_clear(struct solid_turns *turns)
     *turns = (struct solid_turns){0};
 }
 
-void solid_turns_begin(struct solid_turns *turns)
+void solid_turns_begin(struct solid_turns *turns, bool loaded)
 {
     if (turns->n_nodes == 0)
         return;
     memset(turns->internal, 0, (size_t)turns->n_nodes * sizeof *turns->internal);
-    memset(turns->external, 0, (size_t)turns->n_nodes * sizeof *turns->external);
+    if (loaded)
+        memset(turns->external, 0, (size_t)turns->n_nodes * sizeof *turns->external);
 }
 
 /* A node as it is about to turn. */
@@ -42,29 +43,63 @@ struct advance {
     double support[3]; /* moment of what holds it [N m] */
 };
 
-/* As nodes move, (5.3), with inertia for mass; what is held turns as prescribed. */
-static struct advance advance_at(const struct solid *solid, int i, double dt)
+static inline bool is_held(const struct solid *solid, int i)
 {
-    const struct solid_turns *turns = &solid->turns;
+    const int *held = solid->supports.turn_of_node[i];
+    return (held[0] & held[1] & held[2]) >= 0; /* -1: not held */
+}
+
+static void hold(const struct solid *solid, int i, double dt, const double moment[3],
+                 struct advance *advance)
+{
+    const double *w = solid_turn_spin(&solid->turns, i);
+    solid_supports_spin(&solid->supports, i, advance->spin);
+    for (int k = 0; k < 3; k++) {
+        const double held = advance->spin[k];
+        if (solid->supports.turn_of_node[i][k] >= 0)
+            advance->support[k] =
+                solid->turns.inertia[i] *
+                    ((held - w[k]) / dt + solid->damping * (0.5 * (held + w[k]))) -
+                moment[k];
+    }
+}
+
+/* What is the same for all nodes: factors of (5.3), with inertia for mass. */
+struct pace {
+    double dt, keep, kick;
+};
+
+static struct pace pace_of(const struct solid *solid, double dt)
+{
     const double half = 0.5 * solid->damping * dt, push = 1.0 / (1.0 + half);
-    const double *w = solid_turn_spin(turns, i);
-    const double inertia = turns->inertia[i];
+    return (struct pace){dt, (1.0 - half) * push, push * dt};
+}
+
+/* Moment on a node about k. */
+static inline double moment_at(const struct solid_turns *turns, int i, int k)
+{
+    return turns->internal[i][k] + turns->external[i][k] + turns->contact[i][k];
+}
+
+/* Its angular velocity half a step later, if nothing holds it. */
+static inline double spin_at(const struct solid_turns *turns, int i, int k, double moment,
+                             double per_inertia, const struct pace *pace)
+{
+    return solid_turn_spin(turns, i)[k] * pace->keep + pace->kick * (moment * per_inertia);
+}
+
+/* What is held turns as prescribed. */
+static struct advance advance_at(const struct solid *solid, int i, const struct pace *pace)
+{
+    const double per_inertia = 1.0 / solid->turns.inertia[i];
     struct advance advance = {{0.0}, {0.0}};
-    double moment[3], held[3];
+    double moment[3];
     for (int k = 0; k < 3; k++) {
-        moment[k] = turns->internal[i][k] + turns->external[i][k] + turns->contact[i][k];
-        advance.spin[k] = w[k] * ((1.0 - half) * push) + push * dt * (moment[k] / inertia);
-        held[k] = advance.spin[k];
+        moment[k] = moment_at(&solid->turns, i, k);
+        advance.spin[k] = spin_at(&solid->turns, i, k, moment[k], per_inertia, pace);
     }
-    solid_supports_spin(&solid->supports, i, held);
-    for (int k = 0; k < 3; k++) {
-        if (solid->supports.turn_of_node[i][k] < 0)
-            continue;
-        advance.spin[k] = held[k];
-        advance.support[k] =
-            inertia * ((held[k] - w[k]) / dt + solid->damping * (0.5 * (held[k] + w[k]))) -
-            moment[k];
-    }
+    if (is_held(solid, i))
+        hold(solid, i, pace->dt, moment, &advance);
     return advance;
 }
 
@@ -91,7 +126,8 @@ double solid_turns_power(const struct solid *solid, int i, double dt, double pow
     double kinetic = 0.0;
     if (!(turns->inertia[i] > 0.0))
         return 0.0;
-    const struct advance advance = advance_at(solid, i, dt);
+    const struct pace pace = pace_of(solid, dt);
+    const struct advance advance = advance_at(solid, i, &pace);
     add_power(solid, i, &advance, w, power);
     for (int k = 0; k < 3; k++)
         kinetic += 0.5 * turns->inertia[i] * w[k] * advance.spin[k];
@@ -104,26 +140,60 @@ void solid_turns_support(const struct solid *solid, int i, double dt, double mom
     memcpy(moment, none, sizeof none);
     if (solid->turns.n_nodes == 0 || !(solid->turns.inertia[i] > 0.0))
         return;
-    const struct advance advance = advance_at(solid, i, dt);
+    const struct pace pace = pace_of(solid, dt);
+    const struct advance advance = advance_at(solid, i, &pace);
     memcpy(moment, advance.support, sizeof none);
+}
+
+static void move_held(struct solid *solid, int i, double earlier, const struct pace *pace)
+{
+    const struct advance advance = advance_at(solid, i, pace);
+    double *spin = solid_turn_spin(&solid->turns, i), w[3], power[SOLID_N_WORKS] = {0.0};
+    for (int k = 0; k < 3; k++)
+        w[k] = earlier * spin[k] + 0.5 * advance.spin[k];
+    add_power(solid, i, &advance, w, power);
+    for (int k = 0; k < SOLID_N_WORKS; k++)
+        solid->work[i][k] += power[k] * pace->dt;
+    solid_supports_book_turn(&solid->supports, i, advance.support, w, pace->dt);
+    memcpy(spin, advance.spin, sizeof advance.spin);
+}
+
+/* The same, component by component, where no support has to be known. */
+static void move_free(struct solid *solid, int i, double earlier, const struct pace *pace)
+{
+    const struct solid_turns *turns = &solid->turns;
+    const double inertia = turns->inertia[i], per_inertia = 1.0 / inertia;
+    double *spin = solid_turn_spin(turns, i), *work = solid->work[i];
+    double internal = 0.0, loads = 0.0, contact = 0.0, damping = 0.0;
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++) {
+        const double before = spin[k];
+        const double after = spin_at(turns, i, k, moment_at(turns, i, k), per_inertia, pace);
+        const double mean = earlier * before + 0.5 * after;
+        internal -= turns->internal[i][k] * mean;
+        loads += turns->external[i][k] * mean;
+        contact += turns->contact[i][k] * mean;
+        damping += solid->damping * inertia * (0.5 * (before + after)) * mean;
+        spin[k] = after;
+    }
+    work[SOLID_WORK_INTERNAL] += internal * pace->dt;
+    work[SOLID_WORK_LOADS] += loads * pace->dt;
+    work[SOLID_WORK_CONTACT] += contact * pace->dt;
+    work[SOLID_WORK_DAMPING] += damping * pace->dt;
 }
 
 void solid_turns_move(struct solid *solid, int64_t step, double dt, bool forget)
 {
     struct solid_turns *turns = &solid->turns;
     const double earlier = step > 0 ? 0.5 : 0.0; /* nothing was done before the start */
+    const struct pace pace = pace_of(solid, dt);
     for (int i = 0; i < solid->n_nodes; i++) {
         if (!solid->moves[i] || !(turns->inertia[i] > 0.0))
             continue;
-        const struct advance advance = advance_at(solid, i, dt);
-        double *spin = solid_turn_spin(turns, i), w[3], power[SOLID_N_WORKS] = {0.0};
-        for (int k = 0; k < 3; k++)
-            w[k] = earlier * spin[k] + 0.5 * advance.spin[k];
-        add_power(solid, i, &advance, w, power);
-        for (int k = 0; k < SOLID_N_WORKS; k++)
-            solid->work[i][k] += power[k] * dt;
-        solid_supports_book_turn(&solid->supports, i, advance.support, w, dt);
-        memcpy(spin, advance.spin, sizeof advance.spin);
+        if (is_held(solid, i))
+            move_held(solid, i, earlier, &pace);
+        else
+            move_free(solid, i, earlier, &pace);
         if (forget)
             memset(turns->contact[i], 0, sizeof turns->contact[i]);
     }

@@ -26,8 +26,8 @@ struct solid_turns {
 void solid_turns_init(struct solid_turns *turns, int n_nodes);
 void solid_turns_clear(struct solid_turns *turns);
 
-/* No moments yet. */
-void solid_turns_begin(struct solid_turns *turns);
+/* No moments yet; those of loads are not touched if there never were any. */
+void solid_turns_begin(struct solid_turns *turns, bool loaded);
 /* From the angular velocities at n - 1/2 to those at n + 1/2, and the work that was done;
  * supports are at n + 1 already.  Contacts' moments are cleared if they are to be forgotten. */
 void solid_turns_move(struct solid *solid, int64_t step, double dt, bool forget);
