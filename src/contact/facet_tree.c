@@ -140,11 +140,12 @@ void facet_tree_refit(struct facet_tree *tree, const struct mesh *mesh)
     }
 }
 
-static bool box_reaches(const struct facet_tree_node *node, struct vec3 c, double reach)
+/* Do two boxes meet?  All six are asked, for which answers no is hard to foresee. */
+static inline bool boxes_meet(const struct facet_tree_node *node, const double low[3],
+                              const double high[3])
 {
-    return c.x >= node->low[0] - reach && c.x <= node->high[0] + reach &&
-           c.y >= node->low[1] - reach && c.y <= node->high[1] + reach &&
-           c.z >= node->low[2] - reach && c.z <= node->high[2] + reach;
+    return (node->low[0] <= high[0]) & (node->high[0] >= low[0]) & (node->low[1] <= high[1]) &
+           (node->high[1] >= low[1]) & (node->low[2] <= high[2]) & (node->high[2] >= low[2]);
 }
 
 static void add_feature(struct facet_tree_found *found, int feature)
@@ -193,10 +194,12 @@ void facet_tree_query(const struct facet_tree *tree, const struct mesh *mesh,
                       struct vec3 centre, double reach, struct facet_tree_found *found)
 {
     const double wide = reach * MARGIN, widest = wide * MARGIN;
+    const double low[3] = {centre.x - widest, centre.y - widest, centre.z - widest};
+    const double high[3] = {centre.x + widest, centre.y + widest, centre.z + widest};
     found->n = 0;
     for (int i = 0; i < tree->n_nodes;) {
         const struct facet_tree_node *node = &tree->nodes[i];
-        if (!box_reaches(node, centre, widest)) {
+        if (!boxes_meet(node, low, high)) {
             i = node->skip;
             continue;
         }

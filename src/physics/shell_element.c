@@ -182,30 +182,42 @@ static void forces_of(enum solid_element_shape shape, const struct shell_geometr
     }
 }
 
+static double product(int n, const double *a, const double *b)
+{
+    double sum = 0.0;
+    for (int k = 0; k < n; k++)
+        sum += a[k] * b[k];
+    return sum;
+}
+
 struct solid_element_load shell_element_load(enum solid_element_shape shape, double x[][3],
                                              double mass, double thickness, int layers,
                                              const struct solid_element_material *material,
                                              double enough)
 {
-    enum { N = SHELL_GEOMETRY_STRAINS };
+    enum { N = SHELL_GEOMETRY_STRAINS, ALL = 4 * 2 * 3 };
     const struct shell_geometry g = geometry_of(shape, x);
     const double share = mass / solid_element_corners(shape);
     const double inertia = shell_element_inertia(shape, x, thickness);
+    struct solid_element_load load = {.damping = material->damping};
     double stiffness[N], row[N][4][2][3], matrix[N][N];
     stiffness_of(shape, &g, thickness, layers, material, stiffness);
-    for (int k = 0; k < N; k++)
+    for (int k = 0; k < N; k++) {
+        const double of_force = sqrt(stiffness[k] / share);
+        const double of_moment = sqrt(stiffness[k] / (share * inertia));
         forces_of(shape, &g, k, row[k]);
+        for (int c = 0; c < 4; c++)
+            for (int i = 0; i < 3; i++) {
+                row[k][c][0][i] *= of_force;
+                row[k][c][1][i] *= of_moment;
+            }
+        load.stretch += product(ALL, &row[k][0][0][0], &row[k][0][0][0]);
+    }
+    if (load.stretch <= enough) /* their sum is */
+        return load;
     for (int k = 0; k < N; k++)
-        for (int l = 0; l < N; l++) {
-            double force = 0.0, moment = 0.0;
-            for (int c = 0; c < 4; c++)
-                for (int i = 0; i < 3; i++) {
-                    force += row[k][c][0][i] * row[l][c][0][i];
-                    moment += row[k][c][1][i] * row[l][c][1][i];
-                }
-            matrix[k][l] =
-                sqrt(stiffness[k]) * sqrt(stiffness[l]) * (force + moment / inertia) / share;
-        }
-    return (struct solid_element_load){.stretch = eigenvalue_bound(N, &matrix[0][0], enough),
-                                       .damping = material->damping};
+        for (int l = 0; l <= k; l++)
+            matrix[k][l] = matrix[l][k] = product(ALL, &row[k][0][0][0], &row[l][0][0][0]);
+    load.stretch = eigenvalue_bound(N, &matrix[0][0], enough);
+    return load;
 }
