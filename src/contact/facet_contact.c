@@ -11,7 +11,13 @@
  * Where facets are finer than spheres, a group is long, and most of it is too far to touch
  * within the next steps. So each long group knows which of its entries are near, and looks at
  * the others only when the sphere and the body have together moved as far as these were from
- * touching. A sphere at rest looks at all once a search.
+ * touching. A sphere at rest looks at all once a search, and a group of which nothing is near
+ * is not even visited before the fastest sphere may have gone that far.
+ *
+ * Before a surface that deforms nearly all balls cover a circle within one triangle or nothing.
+ * Those for which one triangle is near stand in a list that the kernel goes through by itself;
+ * of others it is asked what their triangles are covered of, and only where that is more than
+ * one circle are patches found and added up (contact/facet_patch.h).
  */
 #include "contact/facet_contact.h"
 
@@ -20,6 +26,7 @@
 
 #include "base/array.h"
 #include "base/report.h"
+#include "contact/facet_circles.h"
 #include "contact/facet_kernel.h"
 #include "contact/facet_local.h"
 #include "contact/facet_patch.h"
@@ -37,9 +44,18 @@
 struct group {
     int begin, end, n_near;
     int sphere;       /* index */
+    bool is_alone;    /* nothing else is listed of the sphere */
+    int circle;       /* its place among the circles that may be; -1: not there */
+    double reach;     /* as far may the sphere be from there, and bodies have travelled [m] */
     double slack;     /* [m]; negative: not looked at yet */
     double travelled; /* by the body when it was looked at [m] */
     struct vec3 from; /* where the sphere was [m] */
+};
+
+/* Until when a group's near entries are all that may touch: what facet_contacts.moved and the
+ * way of the fastest body may come to. */
+struct due {
+    double moved, travelled; /* [-], [m] */
 };
 
 /* What a batch's contact pushes of a surface that deforms. */
@@ -61,6 +77,12 @@ struct facet_work {
     enum isa isa;
     struct facet_kernel_batch batch;
     struct pushed pushed[FACET_KERNEL_BATCH]; /* of bodies that deform */
+    struct facet_circles
+        standing; /* of groups of which one entry is near, as long as that is so */
+    struct facet_circles passing;  /* of other groups in this step */
+    struct facet_circles surveyed; /* entries of which one of a group may be */
+    int kind_capacity;
+    unsigned char *kinds; /* theirs */
     int n_corners, corner_capacity;
     struct facet_patch_corner *corners; /* of the batch's contacts with such bodies */
     struct facet_kernel_load *loads;    /* one a body */
@@ -74,8 +96,15 @@ struct facet_work {
     int *faced_spheres;           /* theirs */
     int n_groups, group_capacity, near_capacity;
     struct group *groups;
-    int *near;         /* of all groups, each at its entries' places */
-    double *travelled; /* at most, one a body [m] */
+    int *near; /* of all groups, each at its entries' places */
+    int is_near_capacity;
+    bool *is_near;      /* of one group */
+    struct due *due;    /* of all groups */
+    bool *is_busy;      /* those to be looked at in every step */
+    int n_busy, *busy;  /* these, ascending */
+    bool busy_is_stale; /* is_busy has changed */
+    double *travelled;  /* at most, one a body [m] */
+    double travelled_most;
 };
 
 /* What a step's contacts need. */
@@ -94,7 +123,7 @@ static struct vec3 vec3_of(const double *lane)
 
 void facet_contacts_init(struct facet_contacts *facets, int n_bodies, enum isa isa)
 {
-    *facets = (struct facet_contacts){.n_bodies = n_bodies};
+    *facets = (struct facet_contacts){.n_bodies = n_bodies, .moved = -1.0};
     facets->loads = array_allocate((size_t)n_bodies, sizeof *facets->loads);
     facets->work = array_allocate_rows(1, sizeof *facets->work);
     facets->work->trees = array_allocate((size_t)n_bodies, sizeof *facets->work->trees);
@@ -119,7 +148,15 @@ void facet_contacts_clear(struct facet_contacts *facets)
     free(work->faced_spheres);
     free(work->groups);
     free(work->near);
+    free(work->is_near);
+    free(work->due);
+    free(work->is_busy);
+    free(work->busy);
     free(work->travelled);
+    facet_circles_clear(&work->standing);
+    facet_circles_clear(&work->passing);
+    facet_circles_clear(&work->surveyed);
+    free(work->kinds);
     facet_local_clear(&work->local);
     facet_patch_clear(&work->patch);
     free(work->corners);
@@ -443,7 +480,7 @@ static void push_skin(const struct step *step, int k)
     if (skin == NULL || pushed->begin == pushed->end)
         return;
     const double elastic[3] = {pushed->elastic.x, pushed->elastic.y, pushed->elastic.z};
-    struct exact_sum *last = body_skin_push(skin, work->corners[pushed->end - 1].corner);
+    struct exact_vector *last = body_skin_push(skin, work->corners[pushed->end - 1].corner);
     for (int x = 0; x < 3; x++) {
         const double force = work->batch.force[x][k], rest = force - elastic[x];
         double left = force;
@@ -451,10 +488,10 @@ static void push_skin(const struct step *step, int k)
             const struct facet_patch_corner *corner = &work->corners[c];
             const double area[3] = {corner->pushed.x, corner->pushed.y, corner->pushed.z};
             const double share = corner->weight * rest - pushed->pressure * area[x];
-            exact_sum_add(&body_skin_push(skin, corner->corner)[x], share);
+            exact_vector_add(body_skin_push(skin, corner->corner), x, share);
             left -= share;
         }
-        exact_sum_add(&last[x], left);
+        exact_vector_add(last, x, left);
     }
     if (!pushed->holds_energy)
         work->batch.contact[k]->overlap = 0.0;
@@ -630,14 +667,21 @@ enum {
     RUN_MOST = 1 << 16, /* contacts */
     AHEAD = 6,          /* groups */
 };
-/* How far beyond touching counts as near: of the radius, and in steps of the present speed. */
-static const double NEAR_RADII = 0.05, NEAR_STEPS = 8.0;
+/* How far beyond touching counts as near: of the radius, and in steps of the present speed; and
+ * how far where it should be few. */
+static const double NEAR_RADII = 0.05, NEAR_STEPS = 8.0, CLOSE_RADII = 0.001,
+                    CLOSE_STEPS = 40.0;
+static const double SLACK_TAKEN = 0.9999; /* the rest is for rounding */
 
-static void add_group(struct facet_work *work, int begin, int end, int sphere)
+static void add_group(struct facet_work *work, int begin, int end, int sphere, bool is_alone)
 {
     ARRAY_GROW(work->groups, work->n_groups + 1, work->group_capacity);
-    work->groups[work->n_groups++] =
-        (struct group){.begin = begin, .end = end, .sphere = sphere, .slack = -1.0};
+    work->groups[work->n_groups++] = (struct group){.begin = begin,
+                                                    .end = end,
+                                                    .sphere = sphere,
+                                                    .is_alone = is_alone,
+                                                    .circle = -1,
+                                                    .slack = -1.0};
 }
 
 /* May the kernel find out by itself whether these touch, all that is listed of a sphere? */
@@ -691,7 +735,8 @@ static void list_runs(struct facet_contacts *facets, const struct bodies *bodies
         if (end - k < FACET_KERNEL_PAD / 2) {
             for (int m = k; m < end; m++)
                 add_group(work, (int)(work->plain[m] - facets->list),
-                          (int)(work->plain[m] - facets->list) + 1, work->plain[m]->sphere);
+                          (int)(work->plain[m] - facets->list) + 1, work->plain[m]->sphere,
+                          true);
             continue;
         }
         struct facet_kernel_run run = {.body = &bodies->list[first->body],
@@ -708,6 +753,23 @@ static void list_runs(struct facet_contacts *facets, const struct bodies *bodies
     }
     for (int ahead = 0; ahead < FACET_KERNEL_AHEAD + FACET_KERNEL_PAD; ahead++)
         add_faced(work, &n, &work->dummy);
+}
+
+/* None has been looked at. */
+static void begin_groups(struct facet_work *work)
+{
+    const size_t n = (size_t)work->n_groups;
+    free(work->due);
+    free(work->is_busy);
+    free(work->busy);
+    work->due = array_allocate(n, sizeof *work->due);
+    work->is_busy = array_allocate(n, sizeof *work->is_busy);
+    work->busy = array_allocate(n, sizeof *work->busy);
+    for (int g = 0; g < work->n_groups; g++)
+        work->due[g] = (struct due){-(double)INFINITY, -(double)INFINITY};
+    work->n_busy = 0;
+    work->busy_is_stale = false;
+    work->standing.of.n = 0;
 }
 
 /* Who is looked at in groups, and who in runs: a sphere's contacts with several bodies follow
@@ -731,75 +793,345 @@ static void list_groups(struct facet_contacts *facets, const struct spheres *sph
         }
         for (int begin = k, m = k + 1; m <= end; m++)
             if (m == end || list[m].body != list[begin].body) {
-                add_group(work, begin, m, list[k].sphere);
+                add_group(work, begin, m, list[k].sphere, list[k].body == list[end - 1].body);
                 begin = m;
             }
     }
     list_runs(facets, bodies);
+    begin_groups(work);
     work->has_groups = true;
 }
 
-static bool is_near(const struct body *body, int feature, struct vec3 centre, double reach)
+/* Finds out which entries of a body a ball of this radius reaches. */
+static void find_near(const struct step *step, const struct body *body, int n,
+                      const struct facet_contact *entries, struct vec3 centre, double radius,
+                      bool *is_near)
 {
-    if (body->skin == NULL)
-        return contact_geometry_reaches(&body->mesh, feature, centre, reach);
-    body_renew_face(body, feature);
-    return contact_patch_reaches(&body->mesh, feature, centre, reach);
+    if (body->skin == NULL) {
+        for (int k = 0; k < n; k++)
+            is_near[k] =
+                contact_geometry_reaches(&body->mesh, entries[k].feature, centre, radius);
+        return;
+    }
+    for (int k = 0; k < n && body->mesh.n_vertices > body->mesh.n_corners; k++)
+        body_renew_mean(body, entries[k].feature);
+    step->kernel.reaches(body, n, entries, centre, radius, is_near);
 }
 
-/* Finds out which entries of a group are near. */
-static void look_around(const struct step *step, struct group *group, struct vec3 centre)
+/* Lists entries that may touch until sphere and body have moved by the group's slack. */
+static void list_near(const struct step *step, struct group *group, struct vec3 centre)
 {
     struct facet_work *work = step->facets->work;
+    const struct facet_contact *entries = &step->facets->list[group->begin];
+    const struct body *body = &step->bodies->list[entries->body];
+    const double reach = sphere_radius(step->spheres, entries->sphere) + group->slack;
+    const int n = group->end - group->begin;
+    const bool all = !(reach < (double)INFINITY);
+    group->n_near = 0;
+    ARRAY_GROW(work->is_near, n, work->is_near_capacity);
+    if (!all)
+        find_near(step, body, n, entries, centre, reach, work->is_near);
+    for (int k = 0; k < n; k++)
+        if (all || facet_contact_touched(&entries[k]) || work->is_near[k])
+            work->near[group->begin + group->n_near++] = k;
+}
+
+/* Finds out which entries of a group are near.  A ball covers far more of a plane where it is
+ * but a little deeper: where that makes several faces of a body that deforms near, less may
+ * make it one. */
+static void look_around(const struct step *step, struct group *group, struct vec3 centre)
+{
     const struct facet_contact *entries = &step->facets->list[group->begin];
     const struct body *body = &step->bodies->list[entries->body];
     const double radius = sphere_radius(step->spheres, entries->sphere);
     const double speed = vec3_norm(vec3_of(sphere_velocity(step->spheres, entries->sphere))) +
                          (body->moves ? body->speed_max : 0.0);
-    const int n = group->end - group->begin;
-    const bool is_long = n >= (body->skin != NULL ? LONG_PATCH : LONG_GROUP);
-    group->n_near = 0;
+    const double way = step->kernel_work->dt * speed;
+    const bool is_long =
+        group->end - group->begin >= (body->skin != NULL ? LONG_PATCH : LONG_GROUP);
     group->from = centre;
-    group->travelled = work->travelled[entries->body];
-    group->slack = is_long ? NEAR_RADII * radius + NEAR_STEPS * step->kernel_work->dt * speed
-                           : (double)INFINITY;
-    for (int k = 0; k < n; k++)
-        if (!is_long || facet_contact_touched(&entries[k]) ||
-            is_near(body, entries[k].feature, centre, radius + group->slack))
-            work->near[group->begin + group->n_near++] = k;
+    group->travelled = step->facets->work->travelled[entries->body];
+    group->slack = is_long ? NEAR_RADII * radius + NEAR_STEPS * way : (double)INFINITY;
+    list_near(step, group, centre);
+    if (body->skin == NULL || group->n_near < 2)
+        return;
+    group->slack = CLOSE_RADII * radius + CLOSE_STEPS * way;
+    list_near(step, group, centre);
 }
 
-static bool must_look(const struct step *step, const struct group *group, struct vec3 centre)
+/* How far the sphere may still go before the near entries are not all that may touch; not
+ * positive: it may be too far already [m]. */
+static double slack_left(const struct step *step, const struct group *group, struct vec3 centre)
 {
     const int body = step->facets->list[group->begin].body;
-    const double left = group->slack - (step->facets->work->travelled[body] - group->travelled);
-    const struct vec3 moved = vec3_sub(centre, group->from);
-    return !(left > 0.0 && vec3_dot(moved, moved) < left * left);
+    const double way = step->facets->work->travelled[body] - group->travelled;
+    return SLACK_TAKEN * group->slack - way - vec3_norm(vec3_sub(centre, group->from));
 }
 
 /* Bodies are where they are in this step: no point of one has gone farther than this. */
 static void count_travel(const struct step *step)
 {
-    for (int b = 0; b < step->bodies->n; b++)
-        if (step->bodies->list[b].moves)
-            step->facets->work->travelled[b] +=
-                1.001 * step->bodies->list[b].speed_max * step->kernel_work->dt;
+    struct facet_work *work = step->facets->work;
+    double most = 0.0;
+    for (int b = 0; b < step->bodies->n; b++) {
+        const struct body *body = &step->bodies->list[b];
+        const double way = 1.001 * body->speed_max * step->kernel_work->dt;
+        if (!body->moves)
+            continue;
+        work->travelled[b] += way;
+        most = way > most ? way : most;
+    }
+    work->travelled_most += most;
 }
 
-/* Those with a body that deforms. */
-static void gather_parts(const struct step *step, const struct group *place, struct vec3 centre,
-                         double radius)
+/* May a kernel find out by itself what near entries cover? */
+static bool may_be_seen(const struct step *step, const struct group *group)
+{
+    const struct body *body = &step->bodies->list[step->facets->list[group->begin].body];
+    return body->skin != NULL && group->is_alone && !body->comes_and_goes &&
+           !step->spheres->periodic.any;
+}
+
+/* How far a group's sphere may be from where it was, and bodies have travelled by then. */
+static double reach_of(const struct step *step, const struct group *group)
+{
+    return SLACK_TAKEN * group->slack + step->facets->work->travelled_most;
+}
+
+/* When a group is to be looked at again: half of what is left is the body's.  In the next step
+ * if nobody says how far spheres go, or where they may come out on the other side. */
+static struct due due_of(const struct step *step, const struct group *group, double left)
+{
+    const struct facet_work *work = step->facets->work;
+    const double moved = step->facets->moved;
+    const bool moves = step->bodies->list[step->facets->list[group->begin].body].moves;
+    const double own = (moves ? 0.499 : 0.999) * left;
+    struct due due = {(double)INFINITY, (double)INFINITY};
+    if (group->n_near > 0 && may_be_seen(step, group)) /* the kernel sees to it */
+        return due;
+    if (moves)
+        due.travelled = work->travelled_most + own;
+    due.moved = moved + own * step->spheres->inverse_allowance[group->sphere][0];
+    if ((moved < 0.0 || step->spheres->periodic.any) && left < (double)INFINITY)
+        due.moved = moved;
+    return due;
+}
+
+/* ---- Circles
+ * ---------------------------------------------------------------------------------- */
+
+static int add_circle(const struct step *step, struct facet_circles *circles, int g, int entry,
+                      double reach)
+{
+    struct facet_work *work = step->facets->work;
+    struct facet_contact *contact = &step->facets->list[entry];
+    return facet_circles_add(circles, contact, &step->bodies->list[contact->body],
+                             &work->loads[contact->body], g, work->groups[g].from, reach);
+}
+
+/* For this step alone. */
+static void add_passing(const struct step *step, int g, int entry)
+{
+    (void)add_circle(step, &step->facets->work->passing, g, entry, (double)INFINITY);
+}
+
+static void take_standing(struct facet_work *work, struct group *group)
+{
+    if (group->circle < 0)
+        return;
+    work->groups[facet_circles_last(&work->standing)].circle = group->circle;
+    facet_circles_take(&work->standing, group->circle);
+    group->circle = -1;
+}
+
+/* A group's near entries have been found. */
+static void sort_group(const struct step *step, int g)
+{
+    struct facet_work *work = step->facets->work;
+    struct group *group = &work->groups[g];
+    const bool stands = group->n_near == 1 && may_be_seen(step, group);
+    const bool is_busy =
+        !stands && (group->n_near > 0 ||
+                    step->bodies->list[step->facets->list[group->begin].body].comes_and_goes);
+    take_standing(work, group);
+    if (stands)
+        group->circle =
+            add_circle(step, &work->standing, g, group->begin + work->near[group->begin],
+                       reach_of(step, group));
+    group->reach = reach_of(step, group);
+    work->busy_is_stale = work->busy_is_stale || is_busy != work->is_busy[g];
+    work->is_busy[g] = is_busy;
+}
+
+static void look_again(const struct step *step, int g, struct vec3 centre)
+{
+    struct facet_work *work = step->facets->work;
+    struct group *group = &work->groups[g];
+    look_around(step, group, centre);
+    sort_group(step, g);
+    work->due[g] = due_of(step, group, group->slack);
+}
+
+/* Looks at a group that is due, if its sphere has gone so far. */
+static void examine(const struct step *step, int g)
+{
+    const struct group *group = &step->facets->work->groups[g];
+    const struct vec3 centre = sphere_place(step->spheres, group->sphere);
+    const double left = slack_left(step, group, centre);
+    if (left > 0.0)
+        step->facets->work->due[g] = due_of(step, group, left);
+    else
+        look_again(step, g, centre);
+}
+
+static void examine_due(const struct step *step)
+{
+    const struct facet_work *work = step->facets->work;
+    const double moved = step->facets->moved, travelled = work->travelled_most;
+    for (int g = 0; g < work->n_groups; g++)
+        if (!(moved < work->due[g].moved && travelled < work->due[g].travelled))
+            examine(step, g);
+}
+
+static void list_busy(struct facet_work *work)
+{
+    if (!work->busy_is_stale)
+        return;
+    work->busy_is_stale = false;
+    work->n_busy = 0;
+    for (int g = 0; g < work->n_groups; g++)
+        if (work->is_busy[g])
+            work->busy[work->n_busy++] = g;
+}
+
+static void gather_patch(const struct step *step, const struct group *place,
+                         bool may_be_circle);
+
+/* What kernels take for circles; the others are looked at one by one. */
+static void press_circles(const struct step *step, struct facet_circles *circles)
+{
+    struct facet_work *work = step->facets->work;
+    struct facet_kernel_circles *of = &circles->of;
+    of->n_gone = of->n_left = 0;
+    if (of->n == 0)
+        return;
+    make_room(step->facets, of->n);
+    facet_circles_renew_means(of);
+    step->kernel.circles(step->kernel_work, of);
+    for (int k = 0; k < of->n_left; k++)
+        gather_patch(step, &work->groups[circles->groups[of->left[k]]], false);
+}
+
+static void press_passing(const struct step *step)
+{
+    press_circles(step, &step->facets->work->passing);
+    step->facets->work->passing.of.n = 0;
+}
+
+/* All that may be circles as long as nothing has gone far; those that have are looked at. */
+static void press_standing(const struct step *step)
+{
+    struct facet_work *work = step->facets->work;
+    struct facet_circles *standing = &work->standing;
+    standing->of.travelled = work->travelled_most;
+    press_circles(step, standing);
+    const int n_gone = standing->of.n_gone, *gone = standing->of.gone;
+    for (int k = n_gone - 1; k >= 0; k--) {
+        const int g = standing->groups[gone[k]];
+        const struct group *group = &work->groups[g];
+        look_again(step, g, sphere_place(step->spheres, group->sphere));
+        if (group->circle >= 0)
+            add_passing(step, g, group->begin + work->near[group->begin]);
+    }
+}
+
+/* A circle of a sphere for which other contacts may count before or behind. */
+static void press_circle(const struct step *step, const struct group *place, int entry)
+{
+    struct facet_work *work = step->facets->work;
+    if (work->batch.n > 0 && work->batch.sphere[work->batch.n - 1] == place->sphere)
+        empty_batch(step);
+    press_passing(step);
+    add_passing(step, (int)(place - work->groups), entry);
+    press_passing(step);
+}
+
+/* What a ball covers of a body that deforms. */
+static void gather_patch(const struct step *step, const struct group *place, bool may_be_circle)
 {
     struct facet_patch *patch = &step->facets->work->patch;
     struct facet_contact *group = &step->facets->list[place->begin];
+    const struct vec3 centre = sphere_place(step->spheres, place->sphere);
+    const double radius = sphere_radius(step->spheres, place->sphere);
     facet_patch_search(patch, group, &step->facets->work->near[place->begin], place->n_near,
                        &step->bodies->list[group->body], centre, radius);
     if (patch->through > step->facets->through_max * radius)
         step->facets->through_max = patch->through / radius;
-    for (int p = 0; p < patch->n_parts; p++)
-        add_part(step, place->begin, &patch->parts[p]);
+    CHECK(may_be_circle || !patch->is_circle, "face %d: a kernel does not see a circle",
+          group[patch->parts->entry].feature);
+    if (patch->is_circle && !step->spheres->periodic.any)
+        press_circle(step, place, place->begin + patch->parts->entry);
+    else
+        for (int p = 0; p < patch->n_parts; p++)
+            add_part(step, place->begin, &patch->parts[p]);
     for (int e = 0; e < patch->n_ended; e++)
         end_part(step, place->begin + patch->ended[e]);
+}
+
+/* All near entries of a group of which nothing else is listed. */
+static void survey(const struct step *step, int g)
+{
+    struct facet_work *work = step->facets->work;
+    const struct group *group = &work->groups[g];
+    for (int m = 0; m < group->n_near; m++)
+        (void)add_circle(step, &work->surveyed, g, group->begin + work->near[group->begin + m],
+                         group->reach);
+}
+
+/* Of the entries of a group, begin to end of the surveyed, one may be a circle and all others
+ * nothing. */
+static void decide(const struct step *step, int begin, int end)
+{
+    struct facet_work *work = step->facets->work;
+    const struct facet_kernel_circles *of = &work->surveyed.of;
+    const int g = work->surveyed.groups[begin];
+    int found = -1, n = 0;
+    bool is_gone = false;
+    for (int k = begin; k < end; k++) {
+        const bool is_none = work->kinds[k] == CONTACT_PATCH_NONE;
+        is_gone = is_gone || work->kinds[k] == FACET_KERNEL_GONE;
+        if (is_none && !facet_contact_touched(of->contact[k]))
+            continue;
+        found = k;
+        n++;
+    }
+    if (is_gone) {
+        look_again(step, g, sphere_place(step->spheres, work->groups[g].sphere));
+        gather_patch(step, &work->groups[g], true);
+    } else if (n == 1 && work->kinds[found] == CONTACT_PATCH_CIRCLE) {
+        add_passing(step, g, (int)(of->contact[found] - step->facets->list));
+    } else if (n > 0) {
+        gather_patch(step, &work->groups[g], true);
+    }
+}
+
+static void decide_surveyed(const struct step *step)
+{
+    struct facet_work *work = step->facets->work;
+    struct facet_kernel_circles *of = &work->surveyed.of;
+    const int *groups = work->surveyed.groups;
+    of->travelled = work->travelled_most;
+    if (of->n == 0)
+        return;
+    ARRAY_GROW(work->kinds, of->n + FACET_KERNEL_PAD, work->kind_capacity);
+    facet_circles_renew_means(of);
+    step->kernel.kinds(step->kernel_work, of, work->kinds);
+    for (int k = 0, end; k < of->n; k = end) {
+        for (end = k + 1; end < of->n && groups[end] == groups[k]; end++)
+            continue;
+        decide(step, k, end);
+    }
+    of->n = 0;
 }
 
 /* The contacts of one sphere with one body. */
@@ -812,12 +1144,11 @@ static void gather_group(const struct step *step, struct group *place)
     const struct mesh *mesh = &body->mesh;
     const struct vec3 centre = sphere_place(step->spheres, group->sphere);
     const double radius = sphere_radius(step->spheres, group->sphere);
-    if (must_look(step, place, centre))
-        look_around(step, place, centre);
-    if (place->n_near == 0)
-        return;
     if (body->skin != NULL) {
-        gather_parts(step, place, centre, radius);
+        if (may_be_seen(step, place))
+            survey(step, (int)(place - step->facets->work->groups));
+        else
+            gather_patch(step, place, true);
         return;
     }
     facet_local_search(local, group, &step->facets->work->near[begin], place->n_near, mesh,
@@ -876,6 +1207,7 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
         .material = spheres->material,
         .n_materials = materials->n,
         .pairs = materials->pairs,
+        .width = facets->width,
         .dummy = &work->dummy,
         .dt = dt,
     };
@@ -888,10 +1220,13 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
     facets->through_max = 0.0;
     for (int r = 0; r < work->n_runs; r++)
         apply_run(&step, &work->runs[r]);
-    for (int g = 0; g < work->n_groups; g++) {
-        struct group *group = &work->groups[g];
-        if (g + AHEAD < work->n_groups)
-            fetch_group(&step, &work->groups[g + AHEAD]);
+    examine_due(&step);
+    press_standing(&step);
+    list_busy(work);
+    for (int k = 0; k < work->n_busy; k++) {
+        struct group *group = &work->groups[work->busy[k]];
+        if (k + AHEAD < work->n_busy)
+            fetch_group(&step, &work->groups[work->busy[k + AHEAD]]);
         const struct body *body = &bodies->list[facets->list[group->begin].body];
         if (!body->exists)
             end_group(&step, group->begin, group->end);
@@ -900,6 +1235,8 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
         else
             gather_group(&step, group);
     }
+    decide_surveyed(&step);
+    press_passing(&step);
     empty_batch(&step);
     facets->overlap_max = kernel_work.overlap_max > facets->through_max
                               ? kernel_work.overlap_max

@@ -72,6 +72,9 @@ struct facet_contacts {
         *width; /* of each sphere's contacts, over what the law takes them for; NULL: 1 */
     bool (*meets)(const void *from, int sphere, int body, int feature); /* NULL: all with all */
     const void *from;
+    /* What spheres have moved since some time: none farther, between two moments, than what
+     * this grew times its allowance.  Negative: nobody says. */
+    double moved;
     int n, capacity;
     struct facet_contact *list; /* sorted by (sphere's canonical order, body, feature) */
     struct body_load *loads;    /* one a body */

@@ -7,6 +7,10 @@
  * by one (contact/facet_local.h) and gathered into a batch, of which the kernel takes several
  * at a time as well.  Either way the arithmetic is the same text, so who went which way shows
  * nowhere.
+ *
+ * A ball before a surface that deforms mostly covers a circle within one triangle of it.  Of
+ * those who may, the kernel finds out who does, and does all of it: a circle is a contact with
+ * the triangle's plane, whose force corners bear by where its foot is.
  */
 #ifndef TREMIE_CONTACT_FACET_KERNEL_H
 #define TREMIE_CONTACT_FACET_KERNEL_H
@@ -28,6 +32,7 @@ enum {
     FACET_KERNEL_PAD = 8, /* runs are multiples of this */
     FACET_KERNEL_AHEAD =
         32, /* contacts behind a run's last that must be there, to be fetched */
+    FACET_KERNEL_GONE = 255, /* beside kinds of patches */
     /* Force on a body (3) [N], torque (3) [N m], its work, work that springs took up [J]. */
     FACET_KERNEL_SUMS = 8,
 };
@@ -56,6 +61,37 @@ struct facet_kernel_batch {
     double force[3][FACET_KERNEL_BATCH];  /* out: on the body, as its sums took it [N] */
 } __attribute__((aligned(64)));
 
+/* Corners of the mesh that a triangle has, and those that bear what presses it: the first two
+ * and one or two more, -1: one, which is the third. */
+struct facet_kernel_triangle {
+    int corners[3], bearers[2];
+};
+
+/* Balls of which each may only cover one triangle of a surface that deforms.  Its third corner,
+ * if it is a mean point, is where it belongs: body_renew_mean(). */
+struct facet_kernel_circles {
+    int n; /* there is room for FACET_KERNEL_PAD more */
+    struct facet_contact **contact;
+    int *sphere;
+    const struct body **body;
+    struct facet_kernel_triangle *triangle;
+    struct facet_kernel_load **load;
+    /* Only as long as they are less than this from there, less what `travelled` says. */
+    double *from[3], *reach, travelled; /* [m] */
+    /* Out: those that are not; those that cover something else, or end. */
+    int n_gone, *gone, n_left, *left;
+    /* Those found. */
+    int *found;
+    struct facet_kernel_circle *circle;
+};
+
+/* A circle. */
+struct facet_kernel_circle {
+    double normal[3], height; /* of the triangle; of the centre over it [m] */
+    double first, third;      /* parts of the corners there [-] */
+    double unused[2];
+} __attribute__((aligned(64)));
+
 /* Spheres before one face of a body that does not yield and whose surface does not run. */
 struct facet_kernel_run {
     const struct body *body;
@@ -75,6 +111,7 @@ struct facet_kernel_work {
     const int32_t *material;
     int n_materials;
     const struct material_pair *pairs; /* n_materials x n_materials */
+    const double *width;               /* of each sphere's contacts; NULL: 1 */
     struct facet_contact *dummy;       /* of the dummy sphere behind the last, no history */
     double dt;                         /* [s] */
     double overlap_max;                /* largest overlap / radius: grows [-] */
@@ -84,6 +121,16 @@ struct facet_kernel_work {
 struct facet_kernel {
     void (*batch)(struct facet_kernel_work *work, struct facet_kernel_batch *batch);
     void (*run)(struct facet_kernel_work *work, const struct facet_kernel_run *run);
+    /* Whether a ball may cover something of n entries of its list with a body that deforms: see
+     * contact_patch_reaches().  Mean points are where they belong. */
+    void (*reaches)(const struct body *body, int n, const struct facet_contact *entries,
+                    struct vec3 centre, double radius, bool *reaches);
+    /* What they cover: kind[] becomes an enum contact_patch_kind of each, FACET_KERNEL_GONE of
+     * those that are not as near as they must be, padded.  Places are those in `motion`, here
+     * and below: not where space is periodic. */
+    void (*kinds)(const struct facet_kernel_work *work,
+                  const struct facet_kernel_circles *circles, unsigned char *kind);
+    void (*circles)(struct facet_kernel_work *work, struct facet_kernel_circles *circles);
 };
 
 /* full: with rolling, twisting and static friction.  The instruction set must run. */

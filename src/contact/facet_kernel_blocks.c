@@ -13,6 +13,7 @@
 #include "model/body.h"
 #include "physics/contact_geometry.h"
 #include "physics/contact_law.h"
+#include "physics/contact_patch.h"
 #include "physics/lanes_rows.h"
 
 enum { WIDTH = LANES_WIDTH, PARTS = LANES_PARTS };
@@ -34,16 +35,6 @@ struct block {
     lanes given[3]; /* force on the body, as its sums took it [N] */
 };
 
-LANES_INLINE void load_rows(lanes rows[8], const double *const at[WIDTH])
-{
-#pragma GCC unroll 8
-    for (int l = 0; l < WIDTH; l++)
-#pragma GCC unroll 4
-        for (int part = 0; part < PARTS; part++)
-            rows[WIDTH * part + l] = lanes_load(at[l] + WIDTH * part);
-    lanes_transpose(rows);
-}
-
 LANES_INLINE void load_spheres(const struct facet_kernel_work *work, struct block *block)
 {
     const double *motion[WIDTH], *spin[WIDTH];
@@ -52,8 +43,8 @@ LANES_INLINE void load_spheres(const struct facet_kernel_work *work, struct bloc
         motion[l] = work->motion[block->sphere[l]].lane;
         spin[l] = work->spin[block->sphere[l]].lane;
     }
-    load_rows(block->motion, motion);
-    load_rows(block->spin, spin);
+    lanes_take_rows(motion, block->motion);
+    lanes_take_rows(spin, block->spin);
 }
 
 LANES_INLINE void load_history(const struct block *block, bool full,
@@ -63,7 +54,7 @@ LANES_INLINE void load_history(const struct block *block, bool full,
 #pragma GCC unroll 8
     for (int l = 0; l < WIDTH; l++)
         rows[l] = block->contact[l]->history;
-    load_rows(history, rows);
+    lanes_take_rows(rows, history);
     if (full)
         for (int h = CONTACT_ROLLING_LANE; h < CONTACT_LANES; h++) {
             history[h] = lanes_all(0.0);
@@ -79,14 +70,13 @@ LANES_INLINE void store_history(const struct block *block, bool full,
         for (int h = CONTACT_ROLLING_LANE; h < CONTACT_LANES; h++)
             for (int l = 0; l < WIDTH; l++)
                 block->contact[l]->history[h] = history[h][l];
-    lanes_transpose(history);
+    double *rows[WIDTH];
 #pragma GCC unroll 8
     for (int l = 0; l < WIDTH; l++) {
         block->contact[l]->overlap = block->overlap[l];
-#pragma GCC unroll 4
-        for (int part = 0; part < PARTS; part++)
-            lanes_store(block->contact[l]->history + WIDTH * part, history[WIDTH * part + l]);
+        rows[l] = block->contact[l]->history;
     }
+    lanes_give_rows(rows, history);
 }
 
 LANES_INLINE struct contact_law_constants constants_of(const struct block *block, bool full)
@@ -457,6 +447,396 @@ LANES_INLINE void apply_run(struct facet_kernel_work *work, const struct facet_k
     note_deepest(work, deepest);
 }
 
+/* ---- Circles
+ * ---------------------------------------------------------------------------------- */
+
+/* A triangle in each lane: see mesh_update_face() in model/mesh.c, which this is in lanes. */
+struct triangles {
+    lanes normal[3], inverse_area; /* of twice its area [1/m2] */
+    lanes from[3][3], inward[3][3], length_squared[3];
+};
+
+/* Those with these corners. */
+LANES_INLINE void find_triangles(const double *corner[3][WIDTH], struct triangles *triangles)
+{
+    lanes along[3][3], across[3], area[3];
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++)
+        lanes_take_vectors(corner[k], triangles->from[k]);
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++)
+        subtract(triangles->from[(k + 1) % 3], triangles->from[k], along[k]);
+    subtract(triangles->from[2], triangles->from[0], across);
+    cross(along[0], across, area);
+    triangles->inverse_area = 1.0 / lanes_sqrt(contact_law_dot(area, area));
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++)
+        triangles->normal[x] = triangles->inverse_area * area[x];
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++) {
+        cross(triangles->normal, along[k], triangles->inward[k]);
+        triangles->length_squared[k] = contact_law_dot(along[k], along[k]);
+    }
+}
+
+LANES_INLINE void triangles_of_circles(const struct facet_kernel_circles *circles,
+                                       const int *of, struct triangles *triangles)
+{
+    const double *corner[3][WIDTH];
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++) {
+        const struct vec3 *place = circles->body[of[l]]->mesh.place;
+#pragma GCC unroll 3
+        for (int k = 0; k < 3; k++)
+            corner[k][l] = &place[circles->triangle[of[l]].corners[k]].x;
+    }
+    find_triangles(corner, triangles);
+}
+
+/* How balls are before their triangles: see look() in physics/contact_patch.c. */
+struct before {
+    lanes_mask circle, apart;
+    lanes height, within[3];
+};
+
+LANES_INLINE void look(const struct triangles *triangles, const lanes motion[8],
+                       struct before *before)
+{
+    const lanes radius = motion[3], none = lanes_all(0.0);
+    lanes arm[3];
+    subtract(motion, triangles->from[0], arm);
+    before->height = contact_law_dot(arm, triangles->normal);
+    const lanes above = lanes_where(before->height < none, -before->height, before->height);
+    const lanes square = (radius - above) * (radius + above);
+    before->apart = ~((before->height > -radius) & (before->height < radius));
+    before->circle = before->height >= none;
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++) {
+        subtract(motion, triangles->from[k], arm);
+        const lanes within = contact_law_dot(arm, triangles->inward[k]);
+        const lanes_mask is_cut = within * within < square * triangles->length_squared[k];
+        before->within[k] = within;
+        before->apart |= ~is_cut & (within < none);
+        before->circle &= ~is_cut;
+    }
+    before->circle &= ~before->apart;
+}
+
+/* Of those that come soon. */
+LANES_INLINE void fetch_circles(const struct facet_kernel_work *work,
+                                const struct facet_kernel_circles *circles, int k)
+{
+    for (int ahead = k; ahead < k + WIDTH && ahead < circles->n; ahead++) {
+        const int i = circles->sphere[ahead];
+        __builtin_prefetch(circles->contact[ahead]->history);
+        __builtin_prefetch(&circles->contact[ahead]->overlap);
+        __builtin_prefetch(&work->motion[i]);
+        __builtin_prefetch(&work->spin[i]);
+        __builtin_prefetch(&work->force[i]);
+    }
+}
+
+/* Which are as near as they must be to where they were. */
+LANES_INLINE lanes_mask find_near(const struct facet_kernel_circles *circles, int k,
+                                  const lanes motion[8])
+{
+    const lanes from[3] = {lanes_load(circles->from[0] + k), lanes_load(circles->from[1] + k),
+                           lanes_load(circles->from[2] + k)};
+    const lanes reach = lanes_load(circles->reach + k);
+    lanes way[3];
+    subtract(motion, from, way);
+    const lanes left = reach - lanes_all(circles->travelled);
+    return (left > lanes_all(0.0)) & (contact_law_dot(way, way) < left * left);
+}
+
+/* Keeps what follows of the circles among a block, for those to come. */
+LANES_INLINE void keep_circles(const struct triangles *triangles, const struct before *before,
+                               struct facet_kernel_circle circles[WIDTH])
+{
+    lanes row[8];
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++)
+        row[x] = triangles->normal[x];
+    row[3] = before->height;
+    row[4] = before->within[1] * triangles->inverse_area;
+    row[5] = before->within[0] * triangles->inverse_area;
+    row[6] = row[7] = lanes_all(0.0);
+    double *at[WIDTH];
+    for (int l = 0; l < WIDTH; l++)
+        at[l] = circles[l].normal;
+    lanes_give_rows(at, row);
+}
+
+/* Appends the lanes of a block that bits tell; returns how many there are then. */
+LANES_INLINE int list_bits(unsigned bits, int block, int n, int *list)
+{
+    for (; bits != 0; bits &= bits - 1)
+        list[n++] = block + __builtin_ctz(bits);
+    return n;
+}
+
+/* Finds those that cover a circle; returns how many, padded with the last.  Others that cover
+ * something, or did so, are left. */
+LANES_INLINE int find_circles(const struct facet_kernel_work *work,
+                              struct facet_kernel_circles *circles)
+{
+    int n = 0;
+    circles->n_left = circles->n_gone = 0;
+    for (int k = 0; k < circles->n; k += WIDTH) {
+        const double *rows[WIDTH];
+        int of[WIDTH];
+        lanes motion[8], held = lanes_all(0.0);
+        struct triangles triangles;
+        struct before before;
+        struct facet_kernel_circle kept[WIDTH];
+        fetch_circles(work, circles, k + FACET_KERNEL_AHEAD);
+#pragma GCC unroll 8
+        for (int l = 0; l < WIDTH; l++) {
+            of[l] = k + l < circles->n ? k + l : k;
+            rows[l] = work->motion[circles->sphere[of[l]]].lane;
+            held[l] = circles->contact[of[l]]->history[CONTACT_RADIUS_LANE];
+        }
+        lanes_take_rows(rows, motion);
+        triangles_of_circles(circles, of, &triangles);
+        look(&triangles, motion, &before);
+        const lanes_mask near = find_near(circles, k, motion);
+        const lanes_mask left =
+            near & ~before.circle & (~before.apart | (held > lanes_all(0.0)));
+        const unsigned all = k + WIDTH < circles->n ? ~0U : ~(~0U << (circles->n - k));
+        unsigned found = lanes_bits(near & before.circle) & all;
+        circles->n_gone = list_bits(lanes_bits(~near) & all, k, circles->n_gone, circles->gone);
+        circles->n_left = list_bits(lanes_bits(left) & all, k, circles->n_left, circles->left);
+        if (found == 0)
+            continue;
+        keep_circles(&triangles, &before, kept);
+        for (; found != 0; found &= found - 1) {
+            const int l = __builtin_ctz(found);
+            circles->found[n] = k + l;
+            circles->circle[n++] = kept[l];
+        }
+    }
+    for (int pad = n; n > 0 && pad % WIDTH != 0; pad++) {
+        circles->found[pad] = circles->found[n - 1];
+        circles->circle[pad] = circles->circle[n - 1];
+    }
+    return n;
+}
+
+/* The corners that bear a circle's force, a triangle's three; where the third is the mean point
+ * of a quad, its four. */
+struct bearers {
+    int n[WIDTH], corner[WIDTH][4];
+    lanes weight[4]; /* together 1 */
+};
+
+/* By where the foot is. */
+LANES_INLINE void find_bearers(const struct facet_kernel_circles *circles, const int *of,
+                               lanes first, lanes third, struct bearers *bearers)
+{
+    const lanes second = (1.0 - first) - third;
+    lanes has_mean = lanes_all(0.0);
+    for (int l = 0; l < WIDTH; l++) {
+        const struct facet_kernel_triangle *triangle = &circles->triangle[of[l]];
+        int *corner = bearers->corner[l];
+        const bool one = triangle->bearers[1] < 0;
+        corner[0] = triangle->corners[0];
+        corner[1] = triangle->corners[1];
+        corner[2] = triangle->bearers[0];
+        corner[3] = triangle->bearers[one ? 0 : 1];
+        bearers->n[l] = one ? 3 : 4;
+        has_mean[l] = one ? 0.0 : 1.0;
+    }
+    const lanes_mask mean = has_mean > lanes_all(0.0);
+    const lanes passed = lanes_keep(mean, 0.25 * third);
+    bearers->weight[0] = first + passed;
+    bearers->weight[1] = second + passed;
+    bearers->weight[2] = lanes_where(mean, passed, third);
+    bearers->weight[3] = passed;
+}
+
+/* How the surface moves there, and how easily it yields. */
+LANES_INLINE void move_with_corners(const struct facet_kernel_circles *circles, const int *of,
+                                    const struct bearers *bearers, struct block *block)
+{
+    block->yield = block->wall[0] = block->wall[1] = block->wall[2] = lanes_all(0.0);
+    for (int c = 0; c < 4; c++) {
+        const double *velocities[WIDTH];
+        lanes velocity[3], inverse_mass = lanes_all(0.0);
+#pragma GCC unroll 8
+        for (int l = 0; l < WIDTH; l++) {
+            const struct body_skin *skin = circles->body[of[l]]->skin;
+            velocities[l] = &skin->velocity[bearers->corner[l][c]].x;
+            inverse_mass[l] = skin->inverse_mass[bearers->corner[l][c]];
+        }
+        lanes_take_vectors(velocities, velocity);
+        const lanes weight = bearers->weight[c];
+#pragma GCC unroll 3
+        for (int x = 0; x < 3; x++)
+            block->wall[x] += weight * velocity[x];
+        block->yield += weight * weight * inverse_mass;
+    }
+}
+
+/* Gives each corner its part of the force; the last has what is left. */
+LANES_INLINE void push_corners(const struct facet_kernel_circles *circles, const int *of, int n,
+                               const struct bearers *bearers, const lanes force[3])
+{
+    double f[3][WIDTH], weight[3][WIDTH];
+    for (int k = 0; k < 3; k++) {
+        lanes_store(f[k], force[k]);
+        lanes_store(weight[k], bearers->weight[k]);
+    }
+    for (int l = 0; l < n; l++) {
+        const struct body_skin *skin = circles->body[of[l]]->skin;
+        const int *corner = bearers->corner[l];
+        const lanes_four all = {f[0][l], f[1][l], f[2][l], 0.0};
+        const lanes_four first = weight[0][l] * all, second = weight[1][l] * all;
+        lanes_four left = (all - first) - second;
+        lanes_exact_add_vector(body_skin_push(skin, corner[0]), first);
+        lanes_exact_add_vector(body_skin_push(skin, corner[1]), second);
+        if (bearers->n[l] > 3) {
+            const lanes_four third = weight[2][l] * all;
+            lanes_exact_add_vector(body_skin_push(skin, corner[3]), left - third);
+            left = third;
+        }
+        lanes_exact_add_vector(body_skin_push(skin, corner[2]), left);
+    }
+}
+
+/* A block of them, the first n of which are not padding. */
+LANES_INLINE void block_of_circles(const struct facet_kernel_work *work,
+                                   const struct facet_kernel_circles *circles, const int *of,
+                                   int n, struct block *block)
+{
+    block->one_load = true;
+    block->moves = true;
+    block->width = lanes_all(1.0);
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++) {
+        const int i = l < n ? circles->sphere[of[l]] : work->dummy->sphere;
+        block->contact[l] = l < n ? circles->contact[of[l]] : work->dummy;
+        block->sphere[l] = i;
+        block->load[l] = circles->load[of[l]];
+        block->pair[l] =
+            &work->pairs[work->material[circles->sphere[of[l]]] * work->n_materials +
+                         circles->body[of[l]]->material];
+        block->one_load = block->one_load && block->load[l] == block->load[0];
+        if (work->width != NULL && l < n)
+            block->width[l] = work->width[i];
+    }
+}
+
+/* The force of n of those found, from the k-th on. */
+LANES_INLINE lanes press_circles(struct facet_kernel_work *work,
+                                 const struct facet_kernel_circles *circles, int k, int n,
+                                 struct contact_law_choice choice, lanes deepest)
+{
+    const int *of = circles->found + k;
+    const double *rows[WIDTH];
+    struct block block;
+    struct bearers bearers;
+    lanes circle[8], real = lanes_all(0.0);
+    for (int l = 0; l < WIDTH; l++)
+        rows[l] = circles->circle[k + l].normal;
+    lanes_take_rows(rows, circle);
+    block_of_circles(work, circles, of, n, &block);
+    load_spheres(work, &block);
+    find_bearers(circles, of, circle[4], circle[5], &bearers);
+    move_with_corners(circles, of, &bearers, &block);
+    for (int l = 0; l < n; l++)
+        real[l] = 1.0;
+    block.overlap = lanes_keep(real > lanes_all(0.0), block.motion[3] - circle[3]);
+#pragma GCC unroll 3
+    for (int x = 0; x < 3; x++) {
+        block.normal[x] = -circle[x];
+        block.point[x] = block.motion[x] + -circle[3] * circle[x];
+        block.turns[x] = lanes_all(0.0);
+    }
+    deepest = press(work, &block, choice, deepest);
+    push_corners(circles, of, n, &bearers, block.given);
+    return deepest;
+}
+
+LANES_INLINE void apply_circles(struct facet_kernel_work *work,
+                                struct facet_kernel_circles *circles,
+                                struct contact_law_choice choice)
+{
+    const int n = find_circles(work, circles);
+    lanes deepest = lanes_all(0.0);
+    for (int k = 0; k < n; k += WIDTH)
+        deepest =
+            press_circles(work, circles, k, n - k < WIDTH ? n - k : WIDTH, choice, deepest);
+    note_deepest(work, deepest);
+}
+
+static void find_kinds(const struct facet_kernel_work *work,
+                       const struct facet_kernel_circles *circles, unsigned char *kind)
+{
+    for (int k = 0; k < circles->n; k += WIDTH) {
+        const double *rows[WIDTH];
+        int of[WIDTH];
+        lanes motion[8];
+        struct triangles triangles;
+        struct before before;
+#pragma GCC unroll 8
+        for (int l = 0; l < WIDTH; l++) {
+            of[l] = k + l < circles->n ? k + l : k;
+            rows[l] = work->motion[circles->sphere[of[l]]].lane;
+        }
+        lanes_take_rows(rows, motion);
+        triangles_of_circles(circles, of, &triangles);
+        look(&triangles, motion, &before);
+        const unsigned apart = lanes_bits(before.apart), circle = lanes_bits(before.circle);
+        const unsigned near = lanes_bits(find_near(circles, k, motion));
+        for (int l = 0; l < WIDTH; l++)
+            kind[k + l] = (unsigned char)((near >> l & 1) == 0 ? (int)FACET_KERNEL_GONE
+                                          : apart >> l & 1     ? (int)CONTACT_PATCH_NONE
+                                          : circle >> l & 1    ? (int)CONTACT_PATCH_CIRCLE
+                                                               : (int)CONTACT_PATCH_PART);
+    }
+}
+
+/* contact_patch_reaches() in lanes. */
+LANES_INLINE lanes_mask reach_triangles(const struct triangles *triangles,
+                                        const lanes centre[3], lanes radius)
+{
+    const lanes none = lanes_all(0.0);
+    lanes arm[3];
+    subtract(centre, triangles->from[0], arm);
+    const lanes height = contact_law_dot(arm, triangles->normal);
+    const lanes square = (radius - height) * (radius + height);
+    lanes_mask reaches = square > none;
+#pragma GCC unroll 3
+    for (int k = 0; k < 3; k++) {
+        subtract(centre, triangles->from[k], arm);
+        const lanes within = contact_law_dot(arm, triangles->inward[k]);
+        reaches &= (within > none) | (within * within < square * triangles->length_squared[k]);
+    }
+    return reaches;
+}
+
+static void find_reaches(const struct body *body, int n, const struct facet_contact *entries,
+                         struct vec3 centre, double radius, bool *reaches)
+{
+    lanes x[3];
+    spread(centre, x);
+    for (int k = 0; k < n; k += WIDTH) {
+        const double *corner[3][WIDTH];
+        struct triangles triangles;
+#pragma GCC unroll 8
+        for (int l = 0; l < WIDTH; l++) {
+            const int face = entries[k + l < n ? k + l : k].feature;
+#pragma GCC unroll 3
+            for (int c = 0; c < 3; c++)
+                corner[c][l] = &body->mesh.place[body->mesh.faces[face].vertices[c]].x;
+        }
+        find_triangles(corner, &triangles);
+        const unsigned bits = lanes_bits(reach_triangles(&triangles, x, lanes_all(radius)));
+        for (int l = 0; l < WIDTH && k + l < n; l++)
+            reaches[k + l] = (bits >> l & 1) != 0;
+    }
+}
+
 #define APPLY(name, ...)                                                                       \
     static void name##_batch(struct facet_kernel_work *work, struct facet_kernel_batch *batch) \
     {                                                                                          \
@@ -465,6 +845,15 @@ LANES_INLINE void apply_run(struct facet_kernel_work *work, const struct facet_k
     static void name##_run(struct facet_kernel_work *work, const struct facet_kernel_run *run) \
     {                                                                                          \
         apply_run(work, run, (struct contact_law_choice){__VA_ARGS__});                        \
+    }                                                                                          \
+    static void name##_circles(struct facet_kernel_work *work,                                 \
+                               struct facet_kernel_circles *circles)                           \
+    {                                                                                          \
+        apply_circles(work, circles, (struct contact_law_choice){__VA_ARGS__});                \
+    }
+#define KERNEL(name)                                                                           \
+    {                                                                                          \
+        name##_batch, name##_run, find_reaches, find_kinds, name##_circles                     \
     }
 APPLY(apply_plain, .ledger = false)
 APPLY(apply_ledger, .ledger = true)
@@ -473,8 +862,6 @@ APPLY(apply_full_ledger, .full = true, .ledger = true)
 
 struct facet_kernel_blocks ISA_OFFER(facet_kernel_blocks)(void)
 {
-    return (struct facet_kernel_blocks){
-        {{{apply_plain_batch, apply_plain_run}, {apply_ledger_batch, apply_ledger_run}},
-         {{apply_full_batch, apply_full_run},
-          {apply_full_ledger_batch, apply_full_ledger_run}}}};
+    return (struct facet_kernel_blocks){{{KERNEL(apply_plain), KERNEL(apply_ledger)},
+                                         {KERNEL(apply_full), KERNEL(apply_full_ledger)}}};
 }

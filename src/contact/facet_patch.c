@@ -167,28 +167,6 @@ static void reserve_slots(struct facet_patch *patch, int n_corners)
         patch->slots[c] = -1;
 }
 
-/* A ball that covers a circle within one triangle, as most do: nothing to add up. */
-static bool take_circle(struct facet_patch *patch, const struct mesh *mesh, double radius)
-{
-    const struct facet_patch_cut *cut = patch->cuts;
-    if (patch->n_cuts != 1 || !cut->at.is_whole || !(cut->at.volume > 0.0))
-        return false;
-    const int *vertices = mesh->faces[cut->face].vertices;
-    if (vertices[0] >= mesh->n_corners || vertices[1] >= mesh->n_corners ||
-        vertices[2] >= mesh->n_corners)
-        return false;
-    ARRAY_GROW(patch->corners, 3, patch->corner_capacity);
-    for (int k = 0; k < 3; k++)
-        patch->corners[k] = (struct facet_patch_corner){
-            vertices[k], cut->at.weights[k] / cut->at.area,
-            vec3_scale(cut->at.weights[k], mesh->face_normal[cut->face])};
-    patch->depth = radius - cut->at.height;
-    patch->n_corners = 3;
-    patch->parts->begin = 0;
-    patch->parts->end = 3;
-    return true;
-}
-
 static void take_cuts(struct facet_patch *patch, const struct body *body, double volume,
                       double radius)
 {
@@ -207,8 +185,8 @@ void facet_patch_search(struct facet_patch *patch, struct facet_contact *group, 
 {
     const double volume = cut_faces(patch, group, near, n, body, centre, radius);
     patch->through = find_through(patch, &body->mesh, centre, radius);
-    if (!take_circle(patch, &body->mesh, radius))
-        take_cuts(patch, body, volume, radius);
+    patch->is_circle = patch->n_cuts == 1 && patch->cuts->at.kind == CONTACT_PATCH_CIRCLE;
+    take_cuts(patch, body, volume, radius);
     hand_over(patch, group, near, n, body->skin);
 }
 

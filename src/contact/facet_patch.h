@@ -45,6 +45,7 @@ struct facet_patch {
     double depth;   /* as in a half-space that takes the same volume of the ball [m] */
     double through; /* how far it is in where it comes out of the body's other side: below the
                        face that holds its foot; 0: it does not come out [m] */
+    bool is_circle; /* within one triangle: what a kernel is for (facet_kernel.h) */
     int n_parts, part_capacity, n_corners, corner_capacity, n_ended, ended_capacity;
     struct facet_patch_part *parts;
     struct facet_patch_corner *corners;

@@ -247,9 +247,9 @@ struct body_skin *body_skin_build(const struct mesh *mesh)
     const size_t n = (size_t)mesh->n_corners;
     struct body_skin *skin = array_allocate(1, sizeof *skin);
     skin->smooth = find_smooth(mesh);
-    skin->velocity = array_allocate(n, sizeof *skin->velocity);
+    skin->velocity = array_allocate(n + 1, sizeof *skin->velocity); /* kernels read on */
     skin->inverse_mass = array_allocate(n, sizeof *skin->inverse_mass);
-    skin->force = array_allocate(n, sizeof *skin->force);
+    skin->force = array_allocate_rows(n, sizeof *skin->force);
     skin->pushed = array_allocate(n, sizeof *skin->pushed);
     skin->since = array_allocate((size_t)mesh->n_faces, sizeof *skin->since);
     return skin;
@@ -257,19 +257,10 @@ struct body_skin *body_skin_build(const struct mesh *mesh)
 
 void body_renew_face(const struct body *body, int face)
 {
-    const struct mesh *mesh = &body->mesh;
     if (body->skin == NULL || body->skin->since[face] == body->skin->now)
         return;
-    for (int k = 0; k < 3; k++) {
-        const int v = mesh->faces[face].vertices[k];
-        struct vec3 mean = {0.0, 0.0, 0.0};
-        if (v < mesh->n_corners)
-            continue;
-        for (int c = 0; c < 4; c++)
-            mean = vec3_axpy(mean, 0.25, mesh->place[mesh->mean_of[v - mesh->n_corners][c]]);
-        mesh->place[v] = mean;
-    }
-    mesh_update_face(mesh, face);
+    body_renew_mean(body, face);
+    mesh_update_face(&body->mesh, face);
     body->skin->since[face] = body->skin->now;
 }
 

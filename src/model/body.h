@@ -11,7 +11,7 @@
 #include <stdbool.h>
 #include <stdint.h>
 
-#include "base/exact_sum.h"
+#include "base/exact_vector.h"
 #include "base/vec3.h"
 #include "model/mesh.h"
 
@@ -23,10 +23,10 @@ struct rigid;
  * mesh (vertices below n_corners; behind them run/deform may push nodes below the surface), and
  * what of it was smooth at the start. */
 struct body_skin {
-    struct vec3 *velocity;        /* half a step before [m/s] */
-    double *inverse_mass;         /* [1/kg] */
-    struct exact_sum (*force)[3]; /* of this step's contacts: body_skin_push() [N] */
-    bool *pushed;                 /* by some of them; forces of others are zero */
+    struct vec3 *velocity;      /* half a step before [m/s] */
+    double *inverse_mass;       /* [1/kg] */
+    struct exact_vector *force; /* of this step's contacts: body_skin_push() [N] */
+    bool *pushed;               /* by some of them; forces of others are zero */
     int *smooth; /* of each face: the first one of those that it goes on to without an edge */
     /* Faces are brought to where their corners are when they are asked for. */
     int now, *since; /* counts changes of places; of each face: at which it was brought there */
@@ -35,10 +35,10 @@ struct body_skin {
 /* Of a surface at rest, as if it could not yield. */
 struct body_skin *body_skin_build(const struct mesh *mesh);
 /* Force on a point of the skin, to be added to. */
-static inline struct exact_sum *body_skin_push(const struct body_skin *skin, int point)
+static inline struct exact_vector *body_skin_push(const struct body_skin *skin, int point)
 {
     skin->pushed[point] = true;
-    return skin->force[point];
+    return &skin->force[point];
 }
 void body_skin_free(struct body_skin *skin);
 
@@ -77,6 +77,19 @@ struct body {
 /* Brings a face of a skin to where its corners are, before it is looked at; those of other
  * bodies are there. */
 void body_renew_face(const struct body *body, int face);
+/* Brings the mean point of a quad, if the face of a skin has one for its third corner, to where
+ * the quad is. */
+static inline void body_renew_mean(const struct body *body, int face)
+{
+    const struct mesh *mesh = &body->mesh;
+    const int v = mesh->faces[face].vertices[2];
+    struct vec3 mean = {0.0, 0.0, 0.0};
+    if (v < mesh->n_corners)
+        return;
+    for (int c = 0; c < 4; c++)
+        mean = vec3_axpy(mean, 0.25, mesh->place[mesh->mean_of[v - mesh->n_corners][c]]);
+    mesh->place[v] = mean;
+}
 
 struct bodies {
     int n;

@@ -373,7 +373,8 @@ static void build(struct mesh *mesh, int n_vertices, const struct vec3 *vertices
     free(draft.mean_of);
     find_edges(mesh);
     list_edges_at_vertices(mesh);
-    mesh->place = array_allocate((size_t)mesh->n_vertices, sizeof *mesh->place);
+    mesh->place =
+        array_allocate((size_t)mesh->n_vertices + 1, sizeof *mesh->place); /* kernels read on */
     for (int v = 0; v < mesh->n_vertices; v++)
         mesh->place[v] = mesh->reference[v];
     mesh->face_normal = array_allocate((size_t)mesh->n_faces, sizeof *mesh->face_normal);

@@ -76,6 +76,28 @@ static bool add_side(struct circle *circle, const struct mesh_border *border, st
     return true;
 }
 
+/* The same where the circle goes past one side alone, between its ends: what is left of it is a
+ * sector and a triangle on the chord.  False where it is not so. */
+static bool cut_off(struct circle *circle, const struct mesh_border *border, struct vec3 foot)
+{
+    const double length = sqrt(border->length_squared), scale = 1.0 / length;
+    const struct vec3 inward = vec3_scale(scale, border->inward);
+    const struct vec3 along = vec3_cross(inward, circle->normal);
+    const double apart = scale * inside(border, foot);
+    const double from = -vec3_dot(vec3_sub(foot, border->from), along), to = from + length;
+    const double chord = sqrt((circle->around - apart) * (circle->around + apart));
+    const double h = circle->height, radius = circle->radius;
+    if (!(from <= -chord && chord <= to))
+        return false;
+    circle->angle = 2.0 * (PI - elementary_atan2(chord, apart));
+    circle->area = 2.0 * apart * chord;
+    circle->solid = elementary_atan2(circle->area, (radius + h) * (radius + h) +
+                                                       (apart - chord) * (apart + chord));
+    circle->turned = vec3_scale(-2.0 * chord / circle->around, along);
+    circle->moment = vec3_scale(-2.0 * circle->area * apart, inward);
+    return true;
+}
+
 /* A ball's volume behind the plane, in a unit of angle around the foot [m3]. */
 static double sector_volume(const struct circle *circle)
 {
@@ -126,43 +148,73 @@ bool contact_patch_reaches(const struct mesh *mesh, int face, struct vec3 centre
     return reaches;
 }
 
+/* How a ball is before a face. */
+struct before {
+    bool meets, is_whole; /* does it reach it?  All of the circle? */
+    int n_cuts, cut;      /* sides whose line cuts the circle; the last of them */
+    double height;        /* of the centre over the plane, of its normal's sign [m] */
+    double square;        /* of the circle's radius [m2] */
+};
+
+/* contact/facet_kernel_blocks.c has the same in lanes. */
+static struct before look(const struct mesh *mesh, int face, struct vec3 centre, double radius)
+{
+    const struct mesh_border *border = mesh->face_borders[face];
+    const double height = vec3_dot(vec3_sub(centre, border[0].from), mesh->face_normal[face]);
+    const double above = height < 0.0 ? -height : height;
+    struct before before = {.meets = height > -radius && height < radius,
+                            .is_whole = true,
+                            .height = height,
+                            .square = (radius - above) * (radius + above)};
+    for (int k = 0; k < 3 && before.meets; k++) {
+        const double within = inside(&border[k], centre);
+        const bool is_cut = within * within < before.square * border[k].length_squared;
+        before.meets = is_cut || !(within < 0.0);
+        before.is_whole = before.is_whole && !is_cut;
+        before.n_cuts += is_cut;
+        before.cut = is_cut ? k : before.cut;
+    }
+    return before;
+}
+
+static enum contact_patch_kind kind_of(const struct before *before)
+{
+    if (!before->meets)
+        return CONTACT_PATCH_NONE;
+    return before->is_whole && before->height >= 0.0 ? CONTACT_PATCH_CIRCLE
+                                                     : CONTACT_PATCH_PART;
+}
+
 bool contact_patch_cut(const struct mesh *mesh, int face, struct vec3 centre, double radius,
                        struct contact_patch *patch)
 {
-    const struct mesh_border *border = mesh->face_borders[face];
     const struct vec3 normal = mesh->face_normal[face];
-    const double height = vec3_dot(vec3_sub(centre, border[0].from), normal);
-    if (!(height > -radius && height < radius))
+    const struct before before = look(mesh, face, centre, radius);
+    if (!before.meets)
         return false;
-    struct circle circle = {
-        .normal = normal, .radius = radius, .height = height < 0.0 ? -height : height};
-    const double square = (radius - circle.height) * (radius + circle.height);
-    bool is_whole = true;
-    for (int k = 0; k < 3; k++) {
-        const double within = inside(&border[k], centre);
-        const bool is_cut = within * within < square * border[k].length_squared;
-        if (!is_cut && within < 0.0)
-            return false;
-        is_whole = is_whole && !is_cut;
-    }
-    const struct vec3 foot = vec3_axpy(centre, -height, normal);
-    patch->is_whole = is_whole;
+    struct circle circle = {.normal = normal,
+                            .radius = radius,
+                            .height = before.height < 0.0 ? -before.height : before.height};
+    const struct vec3 foot = vec3_axpy(centre, -before.height, normal);
+    patch->kind = kind_of(&before);
     patch->height = circle.height;
-    if (is_whole) {
-        patch->area = PI * square;
+    if (before.is_whole) {
+        patch->area = PI * before.square;
         patch->volume = 2.0 * PI * sector_volume(&circle);
         patch->middle = foot;
     } else {
-        circle.around = sqrt(square);
+        circle.around = sqrt(before.square);
         /* A circle that goes past a corner meets no side.  Angles about its middle then add up
          * to nothing, but for rounding. */
-        bool meets = false;
-        for (int k = 0; k < 3; k++)
+        const struct mesh_border *border = mesh->face_borders[face];
+        const bool one = before.n_cuts == 1 && cut_off(&circle, &border[before.cut], foot);
+        bool meets = one;
+        for (int k = 0; k < 3 && !one; k++)
             meets = add_side(&circle, &border[k], foot) || meets;
         if (!meets || !finish(&circle, foot, patch))
             return false;
     }
-    patch->volume = height < 0.0 ? -patch->volume : patch->volume;
+    patch->volume = before.height < 0.0 ? -patch->volume : patch->volume;
     weigh(mesh, face, patch);
     return true;
 }

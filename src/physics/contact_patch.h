@@ -18,8 +18,14 @@
 #include "base/vec3.h"
 #include "model/mesh.h"
 
+enum contact_patch_kind {
+    CONTACT_PATCH_NONE,
+    CONTACT_PATCH_PART,   /* of the circle in which the ball meets the plane, or from behind */
+    CONTACT_PATCH_CIRCLE, /* all of it, from before */
+};
+
 struct contact_patch {
-    bool is_whole;      /* is all of the circle in which the ball meets the plane within it? */
+    enum contact_patch_kind kind;
     double height;      /* of the centre over the plane, of either side [m] */
     double area;        /* of the face within the ball [m2] */
     double volume;      /* of the ball behind that, in the cone from the centre; negative where

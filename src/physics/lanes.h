@@ -146,6 +146,23 @@ LANES_INLINE bool lanes_any(lanes_mask mask)
 #endif
 }
 
+/* Lane l as bit l. */
+LANES_INLINE unsigned lanes_bits(lanes_mask mask)
+{
+#if LANES_WIDTH == 8 && defined __AVX512F__
+    return _mm512_test_epi64_mask((__m512i)mask, (__m512i)mask);
+#elif LANES_WIDTH == 4 && defined __AVX__
+    return (unsigned)_mm256_movemask_pd((__m256d)mask);
+#elif LANES_WIDTH == 2 && defined __SSE2__
+    return (unsigned)_mm_movemask_pd((__m128d)mask);
+#else
+    unsigned bits = 0;
+    for (int l = 0; l < LANES_WIDTH; l++)
+        bits |= (unsigned)(mask[l] != 0) << l;
+    return bits;
+#endif
+}
+
 #endif
 
 #endif

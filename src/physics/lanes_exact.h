@@ -12,6 +12,7 @@
 #include <string.h>
 
 #include "base/exact_sum.h"
+#include "base/exact_vector.h"
 #include "physics/lanes.h"
 
 enum {
@@ -60,6 +61,28 @@ LANES_INLINE lanes lanes_exact_round(lanes term, lanes_mask limbs[3])
         limbs[k] = (lanes_mask)counted - (lanes_mask)offset;
     }
     return taken;
+}
+
+/* Four lanes, whatever the width: a vector and nothing. */
+typedef double lanes_four __attribute__((vector_size(32)));
+typedef int64_t lanes_four_mask __attribute__((vector_size(32)));
+
+/* Adds a vector, below the limit, as a term. */
+LANES_INLINE void lanes_exact_add_vector(struct exact_vector *sum, lanes_four term)
+{
+    static const double magic[3] = {0x1.8p52 * 0x1p10, 0x1.8p52 * 0x1p-30, 0x1.8p52 * 0x1p-70};
+    lanes_four_mask one_more = {0, 0, 0, 1};
+
+#pragma GCC unroll 3
+    for (int k = 0; k < EXACT_VECTOR_LIMBS; k++) {
+        const lanes_four offset = magic[k] - (lanes_four){0}, counted = term + offset;
+        lanes_four_mask limb;
+        term -= counted - offset;
+        memcpy(&limb, sum->limb[k], sizeof limb);
+        limb += ((lanes_four_mask)counted - (lanes_four_mask)offset) + one_more;
+        memcpy(sum->limb[k], &limb, sizeof limb);
+        one_more = (lanes_four_mask){0};
+    }
 }
 
 /* Adds a term in limbs to a sum, each lane to its column. */

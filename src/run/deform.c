@@ -257,9 +257,8 @@ void deform_clear(struct deform *deform, const struct comm *comm)
 /* ---- The step
  * --------------------------------------------------------------------------------- */
 
-void deform_begin(struct simulation *sim)
+void deform_place(struct simulation *sim)
 {
-    sim->deform.failed = false;
     for (int k = 0; k < sim->deform.n; k++)
         deform_skin_place(&sim->deform.list[k], &sim->bodies.list[sim->deform.list[k].body]);
 }
@@ -273,11 +272,8 @@ void deform_place_faces(const struct simulation *sim)
 
 void deform_agree(struct simulation *sim)
 {
-    for (int k = 0; k < sim->deform.n; k++) {
-        struct body *body = &sim->bodies.list[sim->deform.list[k].body];
-        body->speed_max = deform_skin_speed(&sim->deform.list[k]);
-        comm_max(sim->comm, &body->speed_max, 1);
-    }
+    for (int k = 0; k < sim->deform.n; k++)
+        comm_max(sim->comm, &sim->bodies.list[sim->deform.list[k].body].speed_max, 1);
 }
 
 /* Which element failed, and how. */
@@ -344,11 +340,11 @@ void deform_move(struct simulation *sim)
         move_all(sim, substep);
         deform_share_tell(sim);
     }
+    deform_place(sim);
     sim->deform.spent = 0.0;
     for (int k = 0; k < sim->deform.n; k++) {
-        const struct deform_body *deform = &sim->deform.list[k];
-        const double spent =
-            deform_skin_speed(deform) * sim->dt / sim->body_allowance[deform->body];
+        const int b = sim->deform.list[k].body;
+        const double spent = sim->bodies.list[b].speed_max * sim->dt / sim->body_allowance[b];
         sim->deform.spent = spent > sim->deform.spent ? spent : sim->deform.spent;
     }
 }

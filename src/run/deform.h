@@ -60,15 +60,16 @@ static inline int64_t deform_step(const struct deform *deform, int64_t step)
 void deform_init(struct deform *deform, const struct simulation *sim, enum isa isa);
 void deform_clear(struct deform *deform, const struct comm *comm);
 
-/* Puts the skins where the nodes are, with their velocities, before contacts.  Local. */
-void deform_begin(struct simulation *sim);
+/* Puts the skins where the nodes are, with their velocities.  Local. */
+void deform_place(struct simulation *sim);
 /* Puts all faces of skins where their corners are, before a search.  Local. */
 void deform_place_faces(const struct simulation *sim);
 /* Tells how fast skins are on any rank, for allowances.  Collective. */
 void deform_agree(struct simulation *sim);
 /* Takes the contacts' forces and finds the elements'.  Collective. */
 void deform_plan(struct simulation *sim);
-/* Moves all nodes, and finds how much of the allowances that uses here.  Collective. */
+/* Moves all nodes and skins, and finds how much of the allowances that uses here.
+ * Collective. */
 void deform_move(struct simulation *sim);
 
 /* What this rank has of all solids. */

@@ -493,7 +493,7 @@ void deform_share_tell(struct simulation *sim)
 /* What spheres here do to a corner of a skin. */
 struct push {
     int body, vertex;
-    struct exact_sum force[3];
+    struct exact_vector force;
 };
 
 static void pack_pushes(struct simulation *sim, int b, int q)
@@ -508,7 +508,7 @@ static void pack_pushes(struct simulation *sim, int b, int q)
         push.vertex = peer->pushed[m];
         if (!skin->pushed[push.vertex])
             continue;
-        memcpy(push.force, skin->force[push.vertex], sizeof push.force);
+        push.force = skin->force[push.vertex];
         comm_mail_pack(&sim->deform.mail, q, &push, sizeof push);
     }
 }
@@ -526,7 +526,6 @@ void deform_share_push(struct simulation *sim)
         while (comm_mail_waits(&deform->mail, deform->pushing[k])) {
             comm_mail_unpack(&deform->mail, deform->pushing[k], &push, sizeof push);
             struct body_skin *skin = sim->bodies.list[deform->list[push.body].body].skin;
-            for (int x = 0; x < 3; x++)
-                exact_sum_merge(&body_skin_push(skin, push.vertex)[x], &push.force[x]);
+            exact_vector_merge(body_skin_push(skin, push.vertex), &push.force);
         }
 }

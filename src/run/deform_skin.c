@@ -61,8 +61,8 @@ void deform_skin_add(struct deform_skin *skin, struct body *body, int n_nodes, i
         }
         points[k] = point[nodes[k]] - 1;
     }
-    body->skin->force =
-        array_resize(body->skin->force, had, (size_t)skin->n_points, sizeof *body->skin->force);
+    body->skin->force = array_resize_rows(body->skin->force, had, (size_t)skin->n_points,
+                                          sizeof *body->skin->force);
     body->skin->pushed = array_resize(body->skin->pushed, had, (size_t)skin->n_points,
                                       sizeof *body->skin->pushed);
     free(point);
@@ -101,37 +101,60 @@ static struct vec3 place_of(const struct deform_body *deform, int v)
                     arm_of(&deform->skin, v));
 }
 
-static struct vec3 velocity_of(const struct deform_body *deform, int v)
+static double faster(double speed2_max, struct vec3 velocity)
 {
+    const double speed2 = vec3_dot(velocity, velocity);
+    return speed2 > speed2_max ? speed2 : speed2_max;
+}
+
+/* Puts vertices of nodes where these are; returns the largest square of their speeds. */
+static double place_plain(const struct deform_body *deform, const struct body *body)
+{
+    const struct deform_skin *skin = &deform->skin;
+    double speed2_max = 0.0;
+    for (int k = 0; k < skin->n_plain; k++) {
+        const int v = skin->vertices[k], node = skin->nodes[v];
+        body->mesh.place[v] = vec3_of(solid_place(&deform->solid, node));
+        body->skin->velocity[v] = vec3_of(solid_velocity(&deform->solid, node));
+        speed2_max = faster(speed2_max, body->skin->velocity[v]);
+    }
+    return speed2_max;
+}
+
+/* The same of vertices above and below nodes of sheets. */
+static double place_rings(const struct deform_body *deform, const struct body *body)
+{
+    const struct deform_skin *skin = &deform->skin;
     const struct solid_turns *turns = &deform->solid.turns;
-    const int node = deform->skin.nodes[v];
-    const struct vec3 velocity = vec3_of(solid_velocity(&deform->solid, node));
-    if (turns->n_nodes == 0 || v < deform->skin.shape.n_plain)
-        return velocity;
-    return vec3_add(
-        velocity, vec3_cross(vec3_of(solid_turn_spin(turns, node)), arm_of(&deform->skin, v)));
+    struct vec3 *place = body->mesh.place, *velocity = body->skin->velocity;
+    double speed2_max = 0.0;
+    for (int k = 0; k < skin->n_rings; k++) {
+        const int ring = skin->rings[k], node = skin->shape.rings[ring].node;
+        const int above = skin_above(&skin->shape, ring);
+        const struct vec3 arm = skin->arms[ring];
+        const struct vec3 at = vec3_of(solid_place(&deform->solid, node));
+        const struct vec3 drift = vec3_of(solid_velocity(&deform->solid, node));
+        struct vec3 swing = {0.0, 0.0, 0.0};
+        if (turns->n_nodes > 0)
+            swing = vec3_cross(vec3_of(solid_turn_spin(turns, node)), arm);
+        place[above] = vec3_add(at, arm);
+        velocity[above] = vec3_add(drift, swing);
+        speed2_max = faster(speed2_max, velocity[above]);
+        if (ring >= skin->shape.n_both)
+            continue;
+        place[above + 1] = vec3_sub(at, arm);
+        velocity[above + 1] = vec3_sub(drift, swing);
+        speed2_max = faster(speed2_max, velocity[above + 1]);
+    }
+    return speed2_max;
 }
 
 void deform_skin_place(const struct deform_body *deform, struct body *body)
 {
-    const struct deform_skin *skin = &deform->skin;
-    struct mesh *mesh = &body->mesh;
-    double speed2_max = 0.0;
     turn_arms(deform);
-    for (int k = 0; k < skin->n_corners; k++) {
-        const int v = skin->vertices[k];
-        const struct vec3 velocity = velocity_of(deform, v);
-        const double speed2 = vec3_dot(velocity, velocity);
-        mesh->place[v] = place_of(deform, v);
-        body->skin->velocity[v] = velocity;
-        speed2_max = speed2 > speed2_max ? speed2 : speed2_max;
-    }
-    for (int p = 0; p < skin->n_points; p++)
-        if (body->skin->pushed[p])
-            memset(body->skin->force[p], 0, sizeof body->skin->force[p]);
-    memset(body->skin->pushed, 0, (size_t)skin->n_points * sizeof *body->skin->pushed);
+    const double plain = place_plain(deform, body), rings = place_rings(deform, body);
     body->skin->now++;
-    body->speed_max = sqrt(speed2_max);
+    body->speed_max = sqrt(plain > rings ? plain : rings);
 }
 
 void deform_skin_place_faces(const struct deform_body *deform, const struct body *body)
@@ -143,10 +166,10 @@ void deform_skin_place_faces(const struct deform_body *deform, const struct body
 /* Adds up what pushes a node: several vertices may be its own, in the order of their numbers.
  * */
 static void take_force(struct solid *solid, int node, struct vec3 arm,
-                       const struct exact_sum sums[3])
+                       const struct exact_vector *force)
 {
-    const double f[3] = {exact_sum_value(&sums[0]), exact_sum_value(&sums[1]),
-                         exact_sum_value(&sums[2])};
+    double f[3];
+    exact_vector_value(force, f);
     const struct vec3 moment = vec3_cross(arm, vec3_of(f));
     for (int x = 0; x < 3; x++)
         solid->contact[node][x] += f[x];
@@ -164,16 +187,14 @@ void deform_skin_take_forces(struct deform_body *deform, const struct body *body
     for (int p = 0; p < skin->n_points; p++) {
         if (!body->skin->pushed[p])
             continue;
-        memset(solid->contact[skin->nodes[p]], 0, sizeof *solid->contact);
-        if (solid->turns.n_nodes > 0)
-            memset(solid->turns.contact[skin->nodes[p]], 0, sizeof *solid->turns.contact);
-    }
-    for (int p = 0; p < skin->n_points; p++)
-        if (body->skin->pushed[p] && solid->moves[skin->nodes[p]])
+        if (solid->moves[skin->nodes[p]])
             take_force(solid, skin->nodes[p],
                        p < body->mesh.n_corners ? arm_of(skin, p)
                                                 : (struct vec3){0.0, 0.0, 0.0},
-                       body->skin->force[p]);
+                       &body->skin->force[p]);
+        body->skin->force[p] = (struct exact_vector){{{0}}};
+        body->skin->pushed[p] = false;
+    }
 }
 
 /* A face without a normal is not found, wherever its borders may be. */
@@ -244,12 +265,12 @@ void deform_skin_renew(struct deform_body *deform, struct body *body)
     struct deform_skin *skin = &deform->skin;
     struct mesh *mesh = &body->mesh;
     list_vertices(deform, mesh);
-    skin->n_vertices = skin->n_corners = skin->n_faces = 0;
+    skin->n_vertices = skin->n_plain = skin->n_faces = 0;
     for (int v = 0; v < mesh->n_vertices; v++) {
         if (skin->is_here[v] == 0)
             continue;
         skin->vertices[skin->n_vertices++] = v;
-        skin->n_corners += v < mesh->n_corners;
+        skin->n_plain += v < skin->shape.n_plain;
     }
     for (int f = 0; f < mesh->n_faces; f++) {
         const int *v = mesh->faces[f].vertices;
@@ -260,20 +281,6 @@ void deform_skin_renew(struct deform_body *deform, struct body *body)
         place_nowhere(mesh);
     deform_skin_place(deform, body);
     deform_skin_place_faces(deform, body);
-}
-
-double deform_skin_speed(const struct deform_body *deform)
-{
-    double speed2_max = 0.0;
-    for (int k = 0; k < deform->skin.n_corners; k++) {
-        const int v = deform->skin.vertices[k];
-        if (!deform->solid.moves[deform->skin.nodes[v]])
-            continue;
-        const struct vec3 velocity = velocity_of(deform, v);
-        const double speed2 = vec3_dot(velocity, velocity);
-        speed2_max = speed2 > speed2_max ? speed2 : speed2_max;
-    }
-    return sqrt(speed2_max);
 }
 
 /* ---- As a whole

@@ -19,7 +19,7 @@ struct deform_skin {
     int *nodes;   /* of each corner of the mesh, and of points below that balls push */
     int n_points; /* all of these */
     int n_vertices, *vertices; /* here: corners, then mean points; ascending */
-    int n_corners;             /* of these */
+    int n_plain;               /* of these that are nodes */
     int n_faces, *faces;       /* all of whose vertices are here, ascending */
     unsigned char *is_here;    /* of each vertex */
     struct skin shape;
@@ -40,18 +40,15 @@ void deform_skin_add(struct deform_skin *skin, struct body *body, int n_nodes, i
 
 /* Finds out what of the surface is here, and puts it where its nodes are.  Local. */
 void deform_skin_renew(struct deform_body *deform, struct body *body);
-/* Puts what is here where its nodes are, with their velocities, and takes all forces from it.
- * Local. */
+/* Puts what is here where its nodes are, with their velocities.  Local. */
 void deform_skin_place(const struct deform_body *deform, struct body *body);
 /* Brings all faces here to where their corners are, before a search.  Local. */
 void deform_skin_place_faces(const struct deform_body *deform, const struct body *body);
 /* Contacts' forces on the vertices become those on nodes that are moved here, and moments where
- * these turn.  Local. */
+ * these turn, and are taken from it.  Local. */
 void deform_skin_take_forces(struct deform_body *deform, const struct body *body);
 /* Gives back memory of what is not here. */
 void deform_skin_forget(const struct deform_skin *skin, struct mesh *mesh);
-/* Speed of the fastest vertex that is moved here [m/s].  Local. */
-double deform_skin_speed(const struct deform_body *deform);
 
 /* All of all surfaces is here, without velocities, until deform_skin_hide().  Collective. */
 void deform_skin_show(struct simulation *sim);

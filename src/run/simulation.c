@@ -97,6 +97,7 @@ static void begin(struct simulation *sim, const struct comm *comm, const struct 
     spheres_init(&sim->spheres);
     periodic_init(&sim->spheres.periodic, job);
     facet_contacts_init(&sim->facets, sim->bodies.n, isa);
+    sim->facets.moved = 0.0;
     contact_set_init(&sim->contacts, sim->materials.full, job->energy_ledger);
     sim->body_allowance = array_allocate((size_t)sim->bodies.n, sizeof *sim->body_allowance);
     boxes_init(&sim->boxes, comm->n_ranks);
@@ -159,7 +160,7 @@ static int finish(struct simulation *sim, enum isa isa, const struct origin *ori
     sim->half_buffer = choose_half_buffer(sim);
     runtime_init(&sim->runtime, sim->step);
     bodies_place(&sim->bodies, sim->step, sim->dt);
-    deform_begin(sim);
+    deform_place(sim);
     redistribute_first(sim);
     const int status = origin != NULL ? restore_contacts(sim, origin) : REPORT_FINISHED;
     migrate_forget(&sim->migrate);

@@ -150,7 +150,7 @@ static void begin(struct simulation *sim)
 {
     bodies_place(&sim->bodies, sim->step, sim->dt);
     forced_begin(sim);
-    deform_begin(sim);
+    sim->deform.failed = false;
     touch_begin(sim);
     observe_gone(sim);
     if (!sim->gravity_varies)
@@ -213,6 +213,7 @@ void step(struct simulation *sim)
     watch_forced(&sim->watch, sim);
     observe_overlap(sim, sim->watch.overlap);
     redistribute_spend(sim, spent);
+    sim->facets.moved += spent[0];
     runtime->particle_steps += sim->n_spheres;
     runtime_end(runtime, RUNTIME_WATCH);
 }

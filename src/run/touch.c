@@ -350,11 +350,11 @@ static void push_ball(struct simulation *sim, int i)
         return;
     for (int x = 0; x < 3; x++) {
         const int y = (x + 1) % 3, z = (x + 2) % 3;
-        struct exact_sum *outer = &body_skin_push(skin, where.vertex)[x];
-        exact_sum_add(outer, f[x]);
+        struct exact_vector *outer = body_skin_push(skin, where.vertex);
+        exact_vector_add(outer, x, f[x]);
         for (int m = 0; m < ball->n_inner; m++)
-            exact_sum_add(outer,
-                          -exact_sum_add(&body_skin_push(skin, inner[m])[x], share * f[x]));
+            exact_vector_add(
+                outer, x, -exact_vector_add(body_skin_push(skin, inner[m]), x, share * f[x]));
         exact_sum_add(&load->force[x], f[x]);
         exact_sum_add(&load->torque[x], c[y] * f[z] - c[z] * f[y]);
     }

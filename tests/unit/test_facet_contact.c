@@ -1009,8 +1009,7 @@ TEST(a_skin_takes_what_the_sphere_gives)
         const struct vec3 centre = {0.1 * k - 1.0, 0.7 - 0.05 * k, 1.05};
         put_sphere(&scene, 0, centre, (struct vec3){1, 2, -3}, (struct vec3){4, 5, 6});
         for (int v = 0; v < 4; v++)
-            for (int x = 0; x < 3; x++)
-                skin->force[v][x] = (struct exact_sum){{0}, 0, 0};
+            skin->force[v] = (struct exact_vector){{{0}}};
         search(&scene, false);
         apply(&scene);
         struct exact_sum total[3] = {{{0}, 0, 0}};
@@ -1018,8 +1017,9 @@ TEST(a_skin_takes_what_the_sphere_gives)
         for (int v = 0; v < 4; v++) {
             double f[3];
             for (int x = 0; x < 3; x++) {
-                exact_sum_merge(&total[x], &skin->force[v][x]);
-                f[x] = exact_sum_value(&skin->force[v][x]);
+                const struct exact_sum own = exact_vector_sum(&skin->force[v], x);
+                exact_sum_merge(&total[x], &own);
+                f[x] = exact_sum_value(&own);
             }
             moment = vec3_add(moment, vec3_cross(vertices[v], (struct vec3){f[0], f[1], f[2]}));
         }
