@@ -82,7 +82,7 @@ all_objects := $(library_objects) $(kernel_objects) $(main:%.c=$(BUILD)/%.o) $(t
 
 # --------------------------------------------------------------------------------------------- goals
 
-.PHONY: all hopper dragline test soak fuzzers verify stability bench bench-peers bench-elements charts-quick \
+.PHONY: all hopper dragline test soak fuzzers verify stability bench bench-peers bench-walls bench-elements charts-quick \
     lint help install clean unit_tests \
     verification_cases stability_cases
 .DEFAULT_GOAL := all
@@ -134,13 +134,19 @@ bench:
 	@config/setup test
 	@$(MAKE) --no-print-directory all
 	@BIN='$(BIN)' tests/bench/run
-	@[ -n "$(CASE)" ] || $(MAKE) --no-print-directory bench-elements
+	@[ -n "$(CASE)" ] || $(MAKE) --no-print-directory bench-walls bench-elements
 
 ##  make bench-peers  measure speed beside LIGGGHTS and LAMMPS (CASE=name ROUNDS=5 ISA=v3)
 bench-peers:
 	@config/setup test peers
 	@$(MAKE) --no-print-directory all
 	@BIN='$(BIN)' tests/bench/run --peers
+
+##  make bench-walls     measure what walls that deform cost: a hopper of shells beside one that is rigid (ROUNDS=3)
+bench-walls:
+	@config/setup test
+	@$(MAKE) --no-print-directory all
+	@BIN='$(BIN)' tests/bench/run --walls
 
 ##  make bench-elements  measure what finite elements cost on one core, for each instruction set
 bench-elements:

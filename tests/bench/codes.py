@@ -15,7 +15,7 @@ WORK = os.path.abspath(os.environ.get("WORK") or os.path.join(ROOT, "build", "be
 OUT = os.path.abspath(os.environ.get("OUT") or HERE)
 BIN = os.path.abspath(os.environ.get("BIN") or os.path.join(ROOT, "bin"))
 CORE = os.environ.get("CORE") or "0"  # where runs of one rank are pinned
-PHASES = ("bodies", "facets", "pairs", "integrate", "halo", "watch", "search", "redistribute", "repartition")
+PHASES = ("bodies", "facets", "pairs", "integrate", "solids", "halo", "watch", "search", "redistribute", "repartition")
 
 
 @dataclass

@@ -141,7 +141,7 @@ def suite_table():
     lines = ["| case | spheres | z | ranks | million particle-steps/s | efficiency | " + " | ".join(SHOWN)
              + " | others | steps between searches | bytes a sphere |", "|" + " --- |" * (9 + len(SHOWN))]
     for r in read("suite"):
-        phases = {phase: float(r[f"{phase}_ns"]) for phase in codes.PHASES}
+        phases = {phase: float(r[f"{phase}_ns"] or 0) for phase in codes.PHASES}
         others = sum(time for phase, time in phases.items() if phase not in SHOWN)
         name = name_of(r) + (", without ledger" if r["code"] == WITHOUT else "")
         rate = f"{number(r['rate'])} ({number(r['least'])} to {number(r['most'])})"
@@ -266,13 +266,37 @@ def beside_peers(rows):
     return 0 if states_agree(rows) else 1
 
 
+# ------------------------------------------------------------------------------------------------- walls
+
+def wall_row(case, number, run, first):
+    """Of one round; `first` is the run beside it whose walls do not deform."""
+    return {"hopper": case.name, "elements": case.what, "round": number, "steps": run.steps, "user_s": run.user,
+            "over_rigid": run.user / first.user, "facets_s": run.phases["facets"], "solids_s": run.phases["solids"],
+            "machine": machine()}
+
+
+def keep_walls(rows):
+    write(os.path.join(codes.OUT, "walls.csv"), list(rows[0]), rows)
+
+
+def walls_table():
+    lines = ["| hopper | elements | user CPU time [s] | over rigid | of that facets [s] | elements [s] |", "|" + " --- |" * 6]
+    rows = read("walls")
+    for name in dict.fromkeys(r["hopper"] for r in rows):
+        own = [r for r in rows if r["hopper"] == name]
+        user, ratio, facets, solids = ([float(r[key]) for r in own] for key in ("user_s", "over_rigid", "facets_s", "solids_s"))
+        lines.append(f"| {name} | {own[0]['elements'] or 0} | {spread(user, 1)} | {spread(ratio)} | "
+                     f"{statistics.median(facets):.1f} | {statistics.median(solids):.1f} |")
+    return lines
+
+
 # ------------------------------------------------------------------------------------------------- README.md
 
-TABLES = {"suite": suite_table, "checkpoints": checkpoint_table, "mixtures": contact_table, "peers": peers_table}
+TABLES = {"walls": walls_table, "suite": suite_table, "checkpoints": checkpoint_table, "mixtures": contact_table, "peers": peers_table}
 
 
 def machines(name):
-    return sorted({r["machine"] for r in read("peers" if name == "peers" else "suite")})
+    return sorted({r["machine"] for r in read(name if name in ("peers", "walls") else "suite")})
 
 
 def fill_tables():

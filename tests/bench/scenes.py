@@ -325,3 +325,11 @@ CASES = [
          packing("fall/high.csv"),
          peers=ore_scene("fall/high.csv", (-2.7, 2.7), (-2.7, 2.7), (-0.05, 9), BOX_8768, MOVING)),
 ]
+
+# The first example with walls that do not deform, then with walls that do.
+WALLS = [
+    Case("rigid", "", os.path.join(ROOT, "jobs", "hopper.yaml"), 1e-5, 150000),
+    Case("shell, `cell: 1.1`", "168", os.path.join(ROOT, "jobs", "hopper_deformable.yaml"), 1e-5, 150000),
+    Case("shell, `cell: 2.1`", "48", os.path.join(ROOT, "jobs", "hopper_deformable.yaml"), 1e-5, 150000,
+         options=[("bodies.0.cell", 2.1)]),
+]

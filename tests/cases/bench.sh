@@ -33,6 +33,12 @@ awk -v energy="$(of kinetic_J suite.csv)" -v rate="$(of rate suite.csv)" -v byte
 }' || why+=" kinetic energy $(of kinetic_J suite.csv) J;"
 result "the suite measures a fall"
 
+bench --walls || why+=" status $?;"
+[ "$(wc -l < walls.csv)" = 4 ] && [ "$(of over_rigid walls.csv)" = 1 ] && [ "$(of elements walls.csv)" = "" ] ||
+    why+=" walls.csv does not begin with rigid walls;"
+says "cell: 2.1"
+result "walls that deform are measured beside walls that do not"
+
 case=nothing bench && why+=" runs a case that is not there;"
 says "expected one of"
 result "a case that is not there is named"
