@@ -141,7 +141,7 @@ def suite_table():
     lines = ["| case | spheres | z | ranks | million particle-steps/s | efficiency | " + " | ".join(SHOWN)
              + " | others | steps between searches | bytes a sphere |", "|" + " --- |" * (9 + len(SHOWN))]
     for r in read("suite"):
-        phases = {phase: float(r[f"{phase}_ns"] or 0) for phase in codes.PHASES}
+        phases = {phase: float(r.get(f"{phase}_ns") or 0) for phase in codes.PHASES}
         others = sum(time for phase, time in phases.items() if phase not in SHOWN)
         name = name_of(r) + (", without ledger" if r["code"] == WITHOUT else "")
         rate = f"{number(r['rate'])} ({number(r['least'])} to {number(r['most'])})"
