@@ -1007,41 +1007,42 @@ static void list_busy(struct facet_work *work)
 static void gather_patch(const struct step *step, const struct group *place,
                          bool may_be_circle);
 
-/* What kernels take for circles; the others are looked at one by one. */
-static void press_circles(const struct step *step, struct facet_circles *circles)
+static void press_circles(const struct step *step, struct facet_kernel_circles *of)
 {
-    struct facet_work *work = step->facets->work;
-    struct facet_kernel_circles *of = &circles->of;
     of->n_gone = of->n_left = 0;
     if (of->n == 0)
         return;
     make_room(step->facets, of->n);
     facet_circles_renew_means(of);
     step->kernel.circles(step->kernel_work, of);
-    for (int k = 0; k < of->n_left; k++)
-        gather_patch(step, &work->groups[circles->groups[of->left[k]]], false);
 }
 
+/* These are circles: nothing is left, so no patch is looked at while another one still is. */
 static void press_passing(const struct step *step)
 {
-    press_circles(step, &step->facets->work->passing);
-    step->facets->work->passing.of.n = 0;
+    struct facet_kernel_circles *of = &step->facets->work->passing.of;
+    press_circles(step, of);
+    CHECK(of->n_left == 0, "%d of %d are no circles", of->n_left, of->n);
+    of->n = 0;
 }
 
-/* All that may be circles as long as nothing has gone far; those that have are looked at. */
+/* All that may be circles as long as nothing has gone far.  What else balls cover, and those
+ * that have gone, are looked at one by one. */
 static void press_standing(const struct step *step)
 {
     struct facet_work *work = step->facets->work;
     struct facet_circles *standing = &work->standing;
-    standing->of.travelled = work->travelled_most;
-    press_circles(step, standing);
-    const int n_gone = standing->of.n_gone, *gone = standing->of.gone;
-    for (int k = n_gone - 1; k >= 0; k--) {
-        const int g = standing->groups[gone[k]];
+    struct facet_kernel_circles *of = &standing->of;
+    of->travelled = work->travelled_most;
+    press_circles(step, of);
+    for (int k = 0; k < of->n_left; k++)
+        gather_patch(step, &work->groups[standing->groups[of->left[k]]], false);
+    for (int k = of->n_gone - 1; k >= 0; k--) {
+        const int g = standing->groups[of->gone[k]];
         const struct group *group = &work->groups[g];
         look_again(step, g, sphere_place(step->spheres, group->sphere));
         if (group->circle >= 0)
-            add_passing(step, g, group->begin + work->near[group->begin]);
+            gather_patch(step, group, true);
     }
 }
 

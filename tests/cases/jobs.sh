@@ -2,8 +2,8 @@
 # timeout: 1800
 # Every job of jobs/: `tremie check` warns of nothing but what its header says, and at small size
 # it ends well, does what it is about, and its complete states and series are equal bit for bit on
-# 1, 2 and 3 ranks and when it is killed on 8 half way, in the midst of what it is about, and
-# resumed on 3.  Some lines of a job file are for this test:
+# 1, 2 and 3 ranks, when lists are made at other moments, and when it is killed on 8 half way, in
+# the midst of what it is about, and resumed on 3.  Some lines of a job file are for this test:
 #
 #   # small: OPTIONS    what makes it small: some hundred spheres and steps, half of which fall into
 #                       what the job is about (motion, insertion, removal)
@@ -118,6 +118,10 @@ small()
         result "$name on $ranks ranks"
         rm -rf this
     done
+    run 1 this "$name" "${options[@]}" --set testing.search_every=31
+    [ -n "$why" ] || same_run "$name" this
+    result "$name with a search every 31 steps"
+    rm -rf this
     killed "$name" "${options[@]}"
 }
 
