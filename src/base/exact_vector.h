@@ -51,12 +51,4 @@ static inline void exact_vector_value(const struct exact_vector *vector, double 
     }
 }
 
-/* Component x.  Local. */
-static inline struct exact_sum exact_vector_sum(const struct exact_vector *vector, int x)
-{
-    return (struct exact_sum){{vector->limb[0][x], vector->limb[1][x], vector->limb[2][x]},
-                              vector->limb[0][EXACT_VECTOR_COUNT],
-                              vector->limb[1][EXACT_VECTOR_COUNT]};
-}
-
 #endif

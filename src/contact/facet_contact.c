@@ -46,9 +46,8 @@ struct group {
     int sphere;       /* index */
     bool is_alone;    /* nothing else is listed of the sphere */
     int circle;       /* its place among the circles that may be; -1: not there */
-    double reach;     /* as far may the sphere be from there, and bodies have travelled [m] */
     double slack;     /* [m]; negative: not looked at yet */
-    double travelled; /* by the body when it was looked at [m] */
+    double travelled; /* by bodies when it was looked at [m] */
     struct vec3 from; /* where the sphere was [m] */
 };
 
@@ -77,12 +76,9 @@ struct facet_work {
     enum isa isa;
     struct facet_kernel_batch batch;
     struct pushed pushed[FACET_KERNEL_BATCH]; /* of bodies that deform */
-    struct facet_circles
-        standing; /* of groups of which one entry is near, as long as that is so */
-    struct facet_circles passing;  /* of other groups in this step */
-    struct facet_circles surveyed; /* entries of which one of a group may be */
-    int kind_capacity;
-    unsigned char *kinds; /* theirs */
+    struct facet_kernel_circles standing; /* of groups with one near entry, while that is so */
+    struct facet_kernel_circles passing; /* of other groups in this step, circles for certain */
+    struct facet_kernel_circles surveyed; /* entries of which one of a group may be */
     int n_corners, corner_capacity;
     struct facet_patch_corner *corners; /* of the batch's contacts with such bodies */
     struct facet_kernel_load *loads;    /* one a body */
@@ -103,8 +99,7 @@ struct facet_work {
     bool *is_busy;      /* those to be looked at in every step */
     int n_busy, *busy;  /* these, ascending */
     bool busy_is_stale; /* is_busy has changed */
-    double *travelled;  /* at most, one a body [m] */
-    double travelled_most;
+    double travelled;   /* by the fastest point of any body [m] */
 };
 
 /* What a step's contacts need. */
@@ -129,7 +124,6 @@ void facet_contacts_init(struct facet_contacts *facets, int n_bodies, enum isa i
     facets->work->trees = array_allocate((size_t)n_bodies, sizeof *facets->work->trees);
     facets->work->loads = array_allocate_rows((size_t)n_bodies, sizeof *facets->work->loads);
     facets->work->isa = isa_choose(isa);
-    facets->work->travelled = array_allocate((size_t)n_bodies, sizeof(double));
 }
 
 void facet_contacts_clear(struct facet_contacts *facets)
@@ -152,11 +146,9 @@ void facet_contacts_clear(struct facet_contacts *facets)
     free(work->due);
     free(work->is_busy);
     free(work->busy);
-    free(work->travelled);
     facet_circles_clear(&work->standing);
     facet_circles_clear(&work->passing);
     facet_circles_clear(&work->surveyed);
-    free(work->kinds);
     facet_local_clear(&work->local);
     facet_patch_clear(&work->patch);
     free(work->corners);
@@ -769,7 +761,7 @@ static void begin_groups(struct facet_work *work)
         work->due[g] = (struct due){-(double)INFINITY, -(double)INFINITY};
     work->n_busy = 0;
     work->busy_is_stale = false;
-    work->standing.of.n = 0;
+    work->standing.n = 0;
 }
 
 /* Who is looked at in groups, and who in runs: a sphere's contacts with several bodies follow
@@ -850,7 +842,7 @@ static void look_around(const struct step *step, struct group *group, struct vec
     const bool is_long =
         group->end - group->begin >= (body->skin != NULL ? LONG_PATCH : LONG_GROUP);
     group->from = centre;
-    group->travelled = step->facets->work->travelled[entries->body];
+    group->travelled = step->facets->work->travelled;
     group->slack = is_long ? NEAR_RADII * radius + NEAR_STEPS * way : (double)INFINITY;
     list_near(step, group, centre);
     if (body->skin == NULL || group->n_near < 2)
@@ -859,58 +851,50 @@ static void look_around(const struct step *step, struct group *group, struct vec
     list_near(step, group, centre);
 }
 
-/* How far the sphere may still go before the near entries are not all that may touch; not
- * positive: it may be too far already [m]. */
-static double slack_left(const struct step *step, const struct group *group, struct vec3 centre)
+/* How far a group's sphere may be from where it was, and bodies that move have travelled,
+ * before the near entries are not all that may touch. */
+static double reach_of(const struct group *group)
 {
-    const int body = step->facets->list[group->begin].body;
-    const double way = step->facets->work->travelled[body] - group->travelled;
-    return SLACK_TAKEN * group->slack - way - vec3_norm(vec3_sub(centre, group->from));
+    return SLACK_TAKEN * group->slack + group->travelled;
 }
 
 /* Bodies are where they are in this step: no point of one has gone farther than this. */
 static void count_travel(const struct step *step)
 {
-    struct facet_work *work = step->facets->work;
     double most = 0.0;
     for (int b = 0; b < step->bodies->n; b++) {
         const struct body *body = &step->bodies->list[b];
-        const double way = 1.001 * body->speed_max * step->kernel_work->dt;
-        if (!body->moves)
-            continue;
-        work->travelled[b] += way;
-        most = way > most ? way : most;
+        if (body->moves && body->speed_max > most)
+            most = body->speed_max;
     }
-    work->travelled_most += most;
+    step->facets->work->travelled += 1.001 * most * step->kernel_work->dt;
+}
+
+static const struct body *body_of(const struct step *step, const struct group *group)
+{
+    return &step->bodies->list[step->facets->list[group->begin].body];
 }
 
 /* May a kernel find out by itself what near entries cover? */
 static bool may_be_seen(const struct step *step, const struct group *group)
 {
-    const struct body *body = &step->bodies->list[step->facets->list[group->begin].body];
+    const struct body *body = body_of(step, group);
     return body->skin != NULL && group->is_alone && !body->comes_and_goes &&
            !step->spheres->periodic.any;
-}
-
-/* How far a group's sphere may be from where it was, and bodies have travelled by then. */
-static double reach_of(const struct step *step, const struct group *group)
-{
-    return SLACK_TAKEN * group->slack + step->facets->work->travelled_most;
 }
 
 /* When a group is to be looked at again: half of what is left is the body's.  In the next step
  * if nobody says how far spheres go, or where they may come out on the other side. */
 static struct due due_of(const struct step *step, const struct group *group, double left)
 {
-    const struct facet_work *work = step->facets->work;
     const double moved = step->facets->moved;
-    const bool moves = step->bodies->list[step->facets->list[group->begin].body].moves;
+    const bool moves = body_of(step, group)->moves;
     const double own = (moves ? 0.499 : 0.999) * left;
     struct due due = {(double)INFINITY, (double)INFINITY};
     if (group->n_near > 0 && may_be_seen(step, group)) /* the kernel sees to it */
         return due;
     if (moves)
-        due.travelled = work->travelled_most + own;
+        due.travelled = step->facets->work->travelled + own;
     due.moved = moved + own * step->spheres->inverse_allowance[group->sphere][0];
     if ((moved < 0.0 || step->spheres->periodic.any) && left < (double)INFINITY)
         due.moved = moved;
@@ -920,13 +904,19 @@ static struct due due_of(const struct step *step, const struct group *group, dou
 /* ---- Circles
  * ---------------------------------------------------------------------------------- */
 
-static int add_circle(const struct step *step, struct facet_circles *circles, int g, int entry,
-                      double reach)
+static int add_circle(const struct step *step, struct facet_kernel_circles *circles, int g,
+                      int entry, double reach)
 {
-    struct facet_work *work = step->facets->work;
     struct facet_contact *contact = &step->facets->list[entry];
-    return facet_circles_add(circles, contact, &step->bodies->list[contact->body],
-                             &work->loads[contact->body], g, work->groups[g].from, reach);
+    const struct vec3 from = step->facets->work->groups[g].from;
+    return facet_circles_add(
+        circles, &(struct facet_kernel_entry){.from = {from.x, from.y, from.z},
+                                              .reach = reach,
+                                              .contact = contact,
+                                              .body = &step->bodies->list[contact->body],
+                                              .load = &step->facets->work->loads[contact->body],
+                                              .sphere = contact->sphere,
+                                              .group = g});
 }
 
 /* For this step alone. */
@@ -937,10 +927,11 @@ static void add_passing(const struct step *step, int g, int entry)
 
 static void take_standing(struct facet_work *work, struct group *group)
 {
+    struct facet_kernel_circles *standing = &work->standing;
     if (group->circle < 0)
         return;
-    work->groups[facet_circles_last(&work->standing)].circle = group->circle;
-    facet_circles_take(&work->standing, group->circle);
+    work->groups[standing->list[standing->n - 1].group].circle = group->circle;
+    facet_circles_take(standing, group->circle);
     group->circle = -1;
 }
 
@@ -950,24 +941,20 @@ static void sort_group(const struct step *step, int g)
     struct facet_work *work = step->facets->work;
     struct group *group = &work->groups[g];
     const bool stands = group->n_near == 1 && may_be_seen(step, group);
-    const bool is_busy =
-        !stands && (group->n_near > 0 ||
-                    step->bodies->list[step->facets->list[group->begin].body].comes_and_goes);
+    const bool is_busy = !stands && (group->n_near > 0 || body_of(step, group)->comes_and_goes);
     take_standing(work, group);
     if (stands)
-        group->circle =
-            add_circle(step, &work->standing, g, group->begin + work->near[group->begin],
-                       reach_of(step, group));
-    group->reach = reach_of(step, group);
+        group->circle = add_circle(step, &work->standing, g,
+                                   group->begin + work->near[group->begin], reach_of(group));
     work->busy_is_stale = work->busy_is_stale || is_busy != work->is_busy[g];
     work->is_busy[g] = is_busy;
 }
 
-static void look_again(const struct step *step, int g, struct vec3 centre)
+static void look_again(const struct step *step, int g)
 {
     struct facet_work *work = step->facets->work;
     struct group *group = &work->groups[g];
-    look_around(step, group, centre);
+    look_around(step, group, sphere_place(step->spheres, group->sphere));
     sort_group(step, g);
     work->due[g] = due_of(step, group, group->slack);
 }
@@ -977,17 +964,19 @@ static void examine(const struct step *step, int g)
 {
     const struct group *group = &step->facets->work->groups[g];
     const struct vec3 centre = sphere_place(step->spheres, group->sphere);
-    const double left = slack_left(step, group, centre);
+    const double travelled =
+        body_of(step, group)->moves ? step->facets->work->travelled : group->travelled;
+    const double left = reach_of(group) - travelled - vec3_norm(vec3_sub(centre, group->from));
     if (left > 0.0)
         step->facets->work->due[g] = due_of(step, group, left);
     else
-        look_again(step, g, centre);
+        look_again(step, g);
 }
 
 static void examine_due(const struct step *step)
 {
     const struct facet_work *work = step->facets->work;
-    const double moved = step->facets->moved, travelled = work->travelled_most;
+    const double moved = step->facets->moved, travelled = work->travelled;
     for (int g = 0; g < work->n_groups; g++)
         if (!(moved < work->due[g].moved && travelled < work->due[g].travelled))
             examine(step, g);
@@ -1007,42 +996,40 @@ static void list_busy(struct facet_work *work)
 static void gather_patch(const struct step *step, const struct group *place,
                          bool may_be_circle);
 
-static void press_circles(const struct step *step, struct facet_kernel_circles *of)
+static void press_circles(const struct step *step, struct facet_kernel_circles *circles)
 {
-    of->n_gone = of->n_left = 0;
-    if (of->n == 0)
-        return;
-    make_room(step->facets, of->n);
-    facet_circles_renew_means(of);
-    step->kernel.circles(step->kernel_work, of);
+    make_room(step->facets, circles->n);
+    circles->travelled = step->facets->work->travelled;
+    facet_circles_renew_means(circles);
+    step->kernel.circles(step->kernel_work, circles);
 }
 
-/* These are circles: nothing is left, so no patch is looked at while another one still is. */
 static void press_passing(const struct step *step)
 {
-    struct facet_kernel_circles *of = &step->facets->work->passing.of;
-    press_circles(step, of);
-    CHECK(of->n_left == 0, "%d of %d are no circles", of->n_left, of->n);
-    of->n = 0;
+    struct facet_kernel_circles *passing = &step->facets->work->passing;
+    press_circles(step, passing);
+    for (int k = 0; k < passing->n; k++)
+        CHECK(passing->kind[k] == FACET_KERNEL_CIRCLE, "sphere %d is before no circle",
+              passing->list[k].sphere);
+    passing->n = 0;
 }
 
 /* All that may be circles as long as nothing has gone far.  What else balls cover, and those
- * that have gone, are looked at one by one. */
+ * that have gone, are looked at one by one: those from the last on, whose place others take. */
 static void press_standing(const struct step *step)
 {
     struct facet_work *work = step->facets->work;
-    struct facet_circles *standing = &work->standing;
-    struct facet_kernel_circles *of = &standing->of;
-    of->travelled = work->travelled_most;
-    press_circles(step, of);
-    for (int k = 0; k < of->n_left; k++)
-        gather_patch(step, &work->groups[standing->groups[of->left[k]]], false);
-    for (int k = of->n_gone - 1; k >= 0; k--) {
-        const int g = standing->groups[of->gone[k]];
-        const struct group *group = &work->groups[g];
-        look_again(step, g, sphere_place(step->spheres, group->sphere));
-        if (group->circle >= 0)
-            gather_patch(step, group, true);
+    struct facet_kernel_circles *standing = &work->standing;
+    press_circles(step, standing);
+    for (int k = standing->n - 1; k >= 0; k--) {
+        const int g = standing->list[k].group;
+        if (standing->kind[k] == FACET_KERNEL_OTHER)
+            gather_patch(step, &work->groups[g], false);
+        if (standing->kind[k] != FACET_KERNEL_GONE)
+            continue;
+        look_again(step, g);
+        if (work->groups[g].circle >= 0)
+            gather_patch(step, &work->groups[g], true);
     }
 }
 
@@ -1086,7 +1073,7 @@ static void survey(const struct step *step, int g)
     const struct group *group = &work->groups[g];
     for (int m = 0; m < group->n_near; m++)
         (void)add_circle(step, &work->surveyed, g, group->begin + work->near[group->begin + m],
-                         group->reach);
+                         reach_of(group));
 }
 
 /* Of the entries of a group, begin to end of the surveyed, one may be a circle and all others
@@ -1094,45 +1081,35 @@ static void survey(const struct step *step, int g)
 static void decide(const struct step *step, int begin, int end)
 {
     struct facet_work *work = step->facets->work;
-    const struct facet_kernel_circles *of = &work->surveyed.of;
-    const int g = work->surveyed.groups[begin];
-    int found = -1, n = 0;
-    bool is_gone = false;
-    for (int k = begin; k < end; k++) {
-        const bool is_none = work->kinds[k] == CONTACT_PATCH_NONE;
-        is_gone = is_gone || work->kinds[k] == FACET_KERNEL_GONE;
-        if (is_none && !facet_contact_touched(of->contact[k]))
-            continue;
-        found = k;
-        n++;
-    }
-    if (is_gone) {
-        look_again(step, g, sphere_place(step->spheres, work->groups[g].sphere));
+    const struct facet_kernel_circles *surveyed = &work->surveyed;
+    const int g = surveyed->list[begin].group;
+    int found = begin, n = 0;
+    for (int k = begin; k < end; k++)
+        if (surveyed->kind[k] != FACET_KERNEL_NOTHING) {
+            found = k;
+            n++;
+        }
+    if (surveyed->kind[found] == FACET_KERNEL_GONE) /* then all are */
+        look_again(step, g);
+    if (n == 1 && surveyed->kind[found] == FACET_KERNEL_CIRCLE)
+        add_passing(step, g, (int)(surveyed->list[found].contact - step->facets->list));
+    else if (n > 0)
         gather_patch(step, &work->groups[g], true);
-    } else if (n == 1 && work->kinds[found] == CONTACT_PATCH_CIRCLE) {
-        add_passing(step, g, (int)(of->contact[found] - step->facets->list));
-    } else if (n > 0) {
-        gather_patch(step, &work->groups[g], true);
-    }
 }
 
 static void decide_surveyed(const struct step *step)
 {
-    struct facet_work *work = step->facets->work;
-    struct facet_kernel_circles *of = &work->surveyed.of;
-    const int *groups = work->surveyed.groups;
-    of->travelled = work->travelled_most;
-    if (of->n == 0)
-        return;
-    ARRAY_GROW(work->kinds, of->n + FACET_KERNEL_PAD, work->kind_capacity);
-    facet_circles_renew_means(of);
-    step->kernel.kinds(step->kernel_work, of, work->kinds);
-    for (int k = 0, end; k < of->n; k = end) {
-        for (end = k + 1; end < of->n && groups[end] == groups[k]; end++)
+    struct facet_kernel_circles *surveyed = &step->facets->work->surveyed;
+    surveyed->travelled = step->facets->work->travelled;
+    facet_circles_renew_means(surveyed);
+    step->kernel.kinds(step->kernel_work, surveyed);
+    for (int k = 0, end; k < surveyed->n; k = end) {
+        for (end = k + 1;
+             end < surveyed->n && surveyed->list[end].group == surveyed->list[k].group; end++)
             continue;
         decide(step, k, end);
     }
-    of->n = 0;
+    surveyed->n = 0;
 }
 
 /* The contacts of one sphere with one body. */

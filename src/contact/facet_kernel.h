@@ -32,7 +32,6 @@ enum {
     FACET_KERNEL_PAD = 8, /* runs are multiples of this */
     FACET_KERNEL_AHEAD =
         32, /* contacts behind a run's last that must be there, to be fetched */
-    FACET_KERNEL_GONE = 255, /* beside kinds of patches */
     /* Force on a body (3) [N], torque (3) [N m], its work, work that springs took up [J]. */
     FACET_KERNEL_SUMS = 8,
 };
@@ -67,20 +66,34 @@ struct facet_kernel_triangle {
     int corners[3], bearers[2];
 };
 
-/* Balls of which each may only cover one triangle of a surface that deforms.  Its third corner,
- * if it is a mean point, is where it belongs: body_renew_mean(). */
+/* A ball that may cover something of a triangle, and whose they are. */
+struct facet_kernel_entry {
+    /* Only as long as it is less than this from there, less what `travelled` says. */
+    double from[3], reach; /* [m] */
+    struct facet_contact *contact;
+    const struct body *body;
+    struct facet_kernel_load *load;
+    struct facet_kernel_triangle triangle;
+    int sphere, group;
+};
+
+/* What it does cover. */
+enum facet_kernel_kind {
+    FACET_KERNEL_GONE,    /* it is not as near as it must be */
+    FACET_KERNEL_NOTHING, /* nor did it */
+    FACET_KERNEL_CIRCLE,
+    FACET_KERNEL_OTHER, /* a part of one, or nothing any more */
+};
+
+/* Balls before triangles of surfaces that deform.  A third corner that is a mean point is where
+ * it belongs: body_renew_mean(). */
 struct facet_kernel_circles {
-    int n; /* there is room for FACET_KERNEL_PAD more */
-    struct facet_contact **contact;
-    int *sphere;
-    const struct body **body;
-    struct facet_kernel_triangle *triangle;
-    struct facet_kernel_load **load;
-    /* Only as long as they are less than this from there, less what `travelled` says. */
-    double *from[3], *reach, travelled; /* [m] */
-    /* Out: those that are not; those that cover something else, or end. */
-    int n_gone, *gone, n_left, *left;
-    /* Those found. */
+    int n, capacity;
+    struct facet_kernel_entry *list;
+    double travelled; /* by bodies [m] */
+    /* Out, here with room for FACET_KERNEL_PAD more: an enum facet_kernel_kind of each; those
+     * that are circles. */
+    unsigned char *kind;
     int *found;
     struct facet_kernel_circle *circle;
 };
@@ -121,15 +134,14 @@ struct facet_kernel_work {
 struct facet_kernel {
     void (*batch)(struct facet_kernel_work *work, struct facet_kernel_batch *batch);
     void (*run)(struct facet_kernel_work *work, const struct facet_kernel_run *run);
-    /* Whether a ball may cover something of n entries of its list with a body that deforms: see
-     * contact_patch_reaches().  Mean points are where they belong. */
+    /* Whether a ball may cover something of n entries of its list with a body that deforms;
+     * near a corner it says so also where it just does not.  Mean points are where they
+     * belong. */
     void (*reaches)(const struct body *body, int n, const struct facet_contact *entries,
                     struct vec3 centre, double radius, bool *reaches);
-    /* What they cover: kind[] becomes an enum contact_patch_kind of each, FACET_KERNEL_GONE of
-     * those that are not as near as they must be, padded.  Places are those in `motion`, here
-     * and below: not where space is periodic. */
-    void (*kinds)(const struct facet_kernel_work *work,
-                  const struct facet_kernel_circles *circles, unsigned char *kind);
+    /* Finds kinds; circles() also does all that circles do.  Places are those in `motion`: not
+     * where space is periodic. */
+    void (*kinds)(const struct facet_kernel_work *work, struct facet_kernel_circles *circles);
     void (*circles)(struct facet_kernel_work *work, struct facet_kernel_circles *circles);
 };
 

@@ -13,7 +13,6 @@
 #include "model/body.h"
 #include "physics/contact_geometry.h"
 #include "physics/contact_law.h"
-#include "physics/contact_patch.h"
 #include "physics/lanes_rows.h"
 
 enum { WIDTH = LANES_WIDTH, PARTS = LANES_PARTS };
@@ -456,13 +455,23 @@ struct triangles {
     lanes from[3][3], inward[3][3], length_squared[3];
 };
 
-/* Those with these corners. */
-LANES_INLINE void find_triangles(const double *corner[3][WIDTH], struct triangles *triangles)
+/* Those of bodies of which each has these corners. */
+LANES_INLINE void find_triangles(const struct vec3 *const place[WIDTH],
+                                 const int *const corners[WIDTH], struct triangles *triangles)
 {
     lanes along[3][3], across[3], area[3];
 #pragma GCC unroll 3
-    for (int k = 0; k < 3; k++)
-        lanes_take_vectors(corner[k], triangles->from[k]);
+    for (int k = 0; k < 3; k++) {
+        const double *at[WIDTH];
+        lanes four[4];
+#pragma GCC unroll 8
+        for (int l = 0; l < WIDTH; l++)
+            at[l] = &place[l][corners[l][k]].x;
+        lanes_take_fours(at, four);
+#pragma GCC unroll 3
+        for (int x = 0; x < 3; x++)
+            triangles->from[k][x] = four[x];
+    }
 #pragma GCC unroll 3
     for (int k = 0; k < 3; k++)
         subtract(triangles->from[(k + 1) % 3], triangles->from[k], along[k]);
@@ -477,20 +486,6 @@ LANES_INLINE void find_triangles(const double *corner[3][WIDTH], struct triangle
         cross(triangles->normal, along[k], triangles->inward[k]);
         triangles->length_squared[k] = contact_law_dot(along[k], along[k]);
     }
-}
-
-LANES_INLINE void triangles_of_circles(const struct facet_kernel_circles *circles,
-                                       const int *of, struct triangles *triangles)
-{
-    const double *corner[3][WIDTH];
-#pragma GCC unroll 8
-    for (int l = 0; l < WIDTH; l++) {
-        const struct vec3 *place = circles->body[of[l]]->mesh.place;
-#pragma GCC unroll 3
-        for (int k = 0; k < 3; k++)
-            corner[k][l] = &place[circles->triangle[of[l]].corners[k]].x;
-    }
-    find_triangles(corner, triangles);
 }
 
 /* How balls are before their triangles: see look() in physics/contact_patch.c. */
@@ -527,26 +522,70 @@ LANES_INLINE void fetch_circles(const struct facet_kernel_work *work,
                                 const struct facet_kernel_circles *circles, int k)
 {
     for (int ahead = k; ahead < k + WIDTH && ahead < circles->n; ahead++) {
-        const int i = circles->sphere[ahead];
-        __builtin_prefetch(circles->contact[ahead]->history);
-        __builtin_prefetch(&circles->contact[ahead]->overlap);
-        __builtin_prefetch(&work->motion[i]);
-        __builtin_prefetch(&work->spin[i]);
-        __builtin_prefetch(&work->force[i]);
+        const struct facet_kernel_entry *entry = &circles->list[ahead];
+        __builtin_prefetch(entry->contact->history);
+        __builtin_prefetch(&entry->contact->overlap);
+        __builtin_prefetch(&work->motion[entry->sphere]);
+        __builtin_prefetch(&work->spin[entry->sphere]);
+        __builtin_prefetch(&work->force[entry->sphere]);
     }
 }
 
 /* Which are as near as they must be to where they were. */
-LANES_INLINE lanes_mask find_near(const struct facet_kernel_circles *circles, int k,
-                                  const lanes motion[8])
+LANES_INLINE lanes_mask find_near(const struct facet_kernel_entry *const entry[WIDTH],
+                                  double travelled, const lanes motion[8])
 {
-    const lanes from[3] = {lanes_load(circles->from[0] + k), lanes_load(circles->from[1] + k),
-                           lanes_load(circles->from[2] + k)};
-    const lanes reach = lanes_load(circles->reach + k);
-    lanes way[3];
+    const double *at[WIDTH];
+    lanes from[4], way[3];
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++)
+        at[l] = entry[l]->from;
+    lanes_take_fours(at, from);
     subtract(motion, from, way);
-    const lanes left = reach - lanes_all(circles->travelled);
+    const lanes left = from[3] - lanes_all(travelled);
     return (left > lanes_all(0.0)) & (contact_law_dot(way, way) < left * left);
+}
+
+/* A block of entries from the k-th on as they are now; sets their kinds and returns as bits
+ * which are circles. */
+LANES_INLINE unsigned look_at_block(const struct facet_kernel_work *work,
+                                    struct facet_kernel_circles *circles, int k,
+                                    struct triangles *triangles, struct before *before)
+{
+    const struct facet_kernel_entry *entry[WIDTH];
+    const struct vec3 *place[WIDTH];
+    const int *corners[WIDTH];
+    const double *rows[WIDTH];
+    lanes motion[8], held = lanes_all(0.0);
+#pragma GCC unroll 8
+    for (int l = 0; l < WIDTH; l++) {
+        entry[l] = &circles->list[k + l < circles->n ? k + l : k];
+        place[l] = entry[l]->body->mesh.place;
+        corners[l] = entry[l]->triangle.corners;
+        rows[l] = work->motion[entry[l]->sphere].lane;
+        held[l] = entry[l]->contact->history[CONTACT_RADIUS_LANE];
+    }
+    lanes_take_rows(rows, motion);
+    find_triangles(place, corners, triangles);
+    look(triangles, motion, before);
+    const lanes_mask near = find_near(entry, circles->travelled, motion);
+    const unsigned seen = lanes_bits(near), circle = lanes_bits(near & before->circle);
+    const unsigned nothing = lanes_bits(before->apart & ~(held > lanes_all(0.0)));
+    for (int l = 0; l < WIDTH; l++)
+        circles->kind[k + l] = (unsigned char)((seen >> l & 1) == 0 ? FACET_KERNEL_GONE
+                                               : circle >> l & 1    ? FACET_KERNEL_CIRCLE
+                                               : nothing >> l & 1   ? FACET_KERNEL_NOTHING
+                                                                    : FACET_KERNEL_OTHER);
+    return k + WIDTH < circles->n ? circle : circle & ~(~0U << (circles->n - k));
+}
+
+static void find_kinds(const struct facet_kernel_work *work,
+                       struct facet_kernel_circles *circles)
+{
+    struct triangles triangles;
+    struct before before;
+    for (int k = 0; k < circles->n; k += WIDTH)
+        (void)look_at_block(work, circles, k, &triangles, &before);
 }
 
 /* Keeps what follows of the circles among a block, for those to come. */
@@ -567,45 +606,17 @@ LANES_INLINE void keep_circles(const struct triangles *triangles, const struct b
     lanes_give_rows(at, row);
 }
 
-/* Appends the lanes of a block that bits tell; returns how many there are then. */
-LANES_INLINE int list_bits(unsigned bits, int block, int n, int *list)
-{
-    for (; bits != 0; bits &= bits - 1)
-        list[n++] = block + __builtin_ctz(bits);
-    return n;
-}
-
-/* Finds those that cover a circle; returns how many, padded with the last.  Others that cover
- * something, or did so, are left. */
+/* Finds kinds, and keeps those that are circles; returns how many, padded with the last. */
 LANES_INLINE int find_circles(const struct facet_kernel_work *work,
                               struct facet_kernel_circles *circles)
 {
     int n = 0;
-    circles->n_left = circles->n_gone = 0;
     for (int k = 0; k < circles->n; k += WIDTH) {
-        const double *rows[WIDTH];
-        int of[WIDTH];
-        lanes motion[8], held = lanes_all(0.0);
         struct triangles triangles;
         struct before before;
         struct facet_kernel_circle kept[WIDTH];
         fetch_circles(work, circles, k + FACET_KERNEL_AHEAD);
-#pragma GCC unroll 8
-        for (int l = 0; l < WIDTH; l++) {
-            of[l] = k + l < circles->n ? k + l : k;
-            rows[l] = work->motion[circles->sphere[of[l]]].lane;
-            held[l] = circles->contact[of[l]]->history[CONTACT_RADIUS_LANE];
-        }
-        lanes_take_rows(rows, motion);
-        triangles_of_circles(circles, of, &triangles);
-        look(&triangles, motion, &before);
-        const lanes_mask near = find_near(circles, k, motion);
-        const lanes_mask left =
-            near & ~before.circle & (~before.apart | (held > lanes_all(0.0)));
-        const unsigned all = k + WIDTH < circles->n ? ~0U : ~(~0U << (circles->n - k));
-        unsigned found = lanes_bits(near & before.circle) & all;
-        circles->n_gone = list_bits(lanes_bits(~near) & all, k, circles->n_gone, circles->gone);
-        circles->n_left = list_bits(lanes_bits(left) & all, k, circles->n_left, circles->left);
+        unsigned found = look_at_block(work, circles, k, &triangles, &before);
         if (found == 0)
             continue;
         keep_circles(&triangles, &before, kept);
@@ -630,13 +641,13 @@ struct bearers {
 };
 
 /* By where the foot is. */
-LANES_INLINE void find_bearers(const struct facet_kernel_circles *circles, const int *of,
-                               lanes first, lanes third, struct bearers *bearers)
+LANES_INLINE void find_bearers(const struct facet_kernel_entry *const entry[WIDTH], lanes first,
+                               lanes third, struct bearers *bearers)
 {
     const lanes second = (1.0 - first) - third;
     lanes has_mean = lanes_all(0.0);
     for (int l = 0; l < WIDTH; l++) {
-        const struct facet_kernel_triangle *triangle = &circles->triangle[of[l]];
+        const struct facet_kernel_triangle *triangle = &entry[l]->triangle;
         int *corner = bearers->corner[l];
         const bool one = triangle->bearers[1] < 0;
         corner[0] = triangle->corners[0];
@@ -655,20 +666,20 @@ LANES_INLINE void find_bearers(const struct facet_kernel_circles *circles, const
 }
 
 /* How the surface moves there, and how easily it yields. */
-LANES_INLINE void move_with_corners(const struct facet_kernel_circles *circles, const int *of,
+LANES_INLINE void move_with_corners(const struct facet_kernel_entry *const entry[WIDTH],
                                     const struct bearers *bearers, struct block *block)
 {
     block->yield = block->wall[0] = block->wall[1] = block->wall[2] = lanes_all(0.0);
     for (int c = 0; c < 4; c++) {
         const double *velocities[WIDTH];
-        lanes velocity[3], inverse_mass = lanes_all(0.0);
+        lanes velocity[4], inverse_mass = lanes_all(0.0);
 #pragma GCC unroll 8
         for (int l = 0; l < WIDTH; l++) {
-            const struct body_skin *skin = circles->body[of[l]]->skin;
+            const struct body_skin *skin = entry[l]->body->skin;
             velocities[l] = &skin->velocity[bearers->corner[l][c]].x;
             inverse_mass[l] = skin->inverse_mass[bearers->corner[l][c]];
         }
-        lanes_take_vectors(velocities, velocity);
+        lanes_take_fours(velocities, velocity);
         const lanes weight = bearers->weight[c];
 #pragma GCC unroll 3
         for (int x = 0; x < 3; x++)
@@ -678,7 +689,7 @@ LANES_INLINE void move_with_corners(const struct facet_kernel_circles *circles, 
 }
 
 /* Gives each corner its part of the force; the last has what is left. */
-LANES_INLINE void push_corners(const struct facet_kernel_circles *circles, const int *of, int n,
+LANES_INLINE void push_corners(const struct facet_kernel_entry *const entry[WIDTH], int n,
                                const struct bearers *bearers, const lanes force[3])
 {
     double f[3][WIDTH], weight[3][WIDTH];
@@ -687,7 +698,7 @@ LANES_INLINE void push_corners(const struct facet_kernel_circles *circles, const
         lanes_store(weight[k], bearers->weight[k]);
     }
     for (int l = 0; l < n; l++) {
-        const struct body_skin *skin = circles->body[of[l]]->skin;
+        const struct body_skin *skin = entry[l]->body->skin;
         const int *corner = bearers->corner[l];
         const lanes_four all = {f[0][l], f[1][l], f[2][l], 0.0};
         const lanes_four first = weight[0][l] * all, second = weight[1][l] * all;
@@ -705,21 +716,20 @@ LANES_INLINE void push_corners(const struct facet_kernel_circles *circles, const
 
 /* A block of them, the first n of which are not padding. */
 LANES_INLINE void block_of_circles(const struct facet_kernel_work *work,
-                                   const struct facet_kernel_circles *circles, const int *of,
-                                   int n, struct block *block)
+                                   const struct facet_kernel_entry *const entry[WIDTH], int n,
+                                   struct block *block)
 {
     block->one_load = true;
     block->moves = true;
     block->width = lanes_all(1.0);
 #pragma GCC unroll 8
     for (int l = 0; l < WIDTH; l++) {
-        const int i = l < n ? circles->sphere[of[l]] : work->dummy->sphere;
-        block->contact[l] = l < n ? circles->contact[of[l]] : work->dummy;
+        const int i = l < n ? entry[l]->sphere : work->dummy->sphere;
+        block->contact[l] = l < n ? entry[l]->contact : work->dummy;
         block->sphere[l] = i;
-        block->load[l] = circles->load[of[l]];
-        block->pair[l] =
-            &work->pairs[work->material[circles->sphere[of[l]]] * work->n_materials +
-                         circles->body[of[l]]->material];
+        block->load[l] = entry[l]->load;
+        block->pair[l] = &work->pairs[work->material[entry[l]->sphere] * work->n_materials +
+                                      entry[l]->body->material];
         block->one_load = block->one_load && block->load[l] == block->load[0];
         if (work->width != NULL && l < n)
             block->width[l] = work->width[i];
@@ -731,18 +741,20 @@ LANES_INLINE lanes press_circles(struct facet_kernel_work *work,
                                  const struct facet_kernel_circles *circles, int k, int n,
                                  struct contact_law_choice choice, lanes deepest)
 {
-    const int *of = circles->found + k;
+    const struct facet_kernel_entry *entry[WIDTH];
     const double *rows[WIDTH];
     struct block block;
     struct bearers bearers;
     lanes circle[8], real = lanes_all(0.0);
-    for (int l = 0; l < WIDTH; l++)
+    for (int l = 0; l < WIDTH; l++) {
+        entry[l] = &circles->list[circles->found[k + l]];
         rows[l] = circles->circle[k + l].normal;
+    }
     lanes_take_rows(rows, circle);
-    block_of_circles(work, circles, of, n, &block);
+    block_of_circles(work, entry, n, &block);
     load_spheres(work, &block);
-    find_bearers(circles, of, circle[4], circle[5], &bearers);
-    move_with_corners(circles, of, &bearers, &block);
+    find_bearers(entry, circle[4], circle[5], &bearers);
+    move_with_corners(entry, &bearers, &block);
     for (int l = 0; l < n; l++)
         real[l] = 1.0;
     block.overlap = lanes_keep(real > lanes_all(0.0), block.motion[3] - circle[3]);
@@ -753,7 +765,7 @@ LANES_INLINE lanes press_circles(struct facet_kernel_work *work,
         block.turns[x] = lanes_all(0.0);
     }
     deepest = press(work, &block, choice, deepest);
-    push_corners(circles, of, n, &bearers, block.given);
+    push_corners(entry, n, &bearers, block.given);
     return deepest;
 }
 
@@ -769,34 +781,7 @@ LANES_INLINE void apply_circles(struct facet_kernel_work *work,
     note_deepest(work, deepest);
 }
 
-static void find_kinds(const struct facet_kernel_work *work,
-                       const struct facet_kernel_circles *circles, unsigned char *kind)
-{
-    for (int k = 0; k < circles->n; k += WIDTH) {
-        const double *rows[WIDTH];
-        int of[WIDTH];
-        lanes motion[8];
-        struct triangles triangles;
-        struct before before;
-#pragma GCC unroll 8
-        for (int l = 0; l < WIDTH; l++) {
-            of[l] = k + l < circles->n ? k + l : k;
-            rows[l] = work->motion[circles->sphere[of[l]]].lane;
-        }
-        lanes_take_rows(rows, motion);
-        triangles_of_circles(circles, of, &triangles);
-        look(&triangles, motion, &before);
-        const unsigned apart = lanes_bits(before.apart), circle = lanes_bits(before.circle);
-        const unsigned near = lanes_bits(find_near(circles, k, motion));
-        for (int l = 0; l < WIDTH; l++)
-            kind[k + l] = (unsigned char)((near >> l & 1) == 0 ? (int)FACET_KERNEL_GONE
-                                          : apart >> l & 1     ? (int)CONTACT_PATCH_NONE
-                                          : circle >> l & 1    ? (int)CONTACT_PATCH_CIRCLE
-                                                               : (int)CONTACT_PATCH_PART);
-    }
-}
-
-/* contact_patch_reaches() in lanes. */
+/* Before or behind: the circle is near every side's line, or within. */
 LANES_INLINE lanes_mask reach_triangles(const struct triangles *triangles,
                                         const lanes centre[3], lanes radius)
 {
@@ -821,16 +806,16 @@ static void find_reaches(const struct body *body, int n, const struct facet_cont
     lanes x[3];
     spread(centre, x);
     for (int k = 0; k < n; k += WIDTH) {
-        const double *corner[3][WIDTH];
+        const struct vec3 *place[WIDTH];
+        const int *corners[WIDTH];
         struct triangles triangles;
 #pragma GCC unroll 8
         for (int l = 0; l < WIDTH; l++) {
             const int face = entries[k + l < n ? k + l : k].feature;
-#pragma GCC unroll 3
-            for (int c = 0; c < 3; c++)
-                corner[c][l] = &body->mesh.place[body->mesh.faces[face].vertices[c]].x;
+            place[l] = body->mesh.place;
+            corners[l] = body->mesh.faces[face].vertices;
         }
-        find_triangles(corner, &triangles);
+        find_triangles(place, corners, &triangles);
         const unsigned bits = lanes_bits(reach_triangles(&triangles, x, lanes_all(radius)));
         for (int l = 0; l < WIDTH && k + l < n; l++)
             reaches[k + l] = (bits >> l & 1) != 0;

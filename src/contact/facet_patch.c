@@ -185,7 +185,7 @@ void facet_patch_search(struct facet_patch *patch, struct facet_contact *group, 
 {
     const double volume = cut_faces(patch, group, near, n, body, centre, radius);
     patch->through = find_through(patch, &body->mesh, centre, radius);
-    patch->is_circle = patch->n_cuts == 1 && patch->cuts->at.kind == CONTACT_PATCH_CIRCLE;
+    patch->is_circle = patch->n_cuts == 1 && patch->cuts->at.is_circle;
     take_cuts(patch, body, volume, radius);
     hand_over(patch, group, near, n, body->skin);
 }

@@ -134,20 +134,6 @@ static void weigh(const struct mesh *mesh, int face, struct contact_patch *patch
     patch->weights[1] = left;
 }
 
-bool contact_patch_reaches(const struct mesh *mesh, int face, struct vec3 centre, double radius)
-{
-    const struct mesh_border *border = mesh->face_borders[face];
-    const double height = vec3_dot(vec3_sub(centre, border[0].from), mesh->face_normal[face]);
-    const double square = (radius - height) * (radius + height);
-    bool reaches = square > 0.0;
-    for (int k = 0; k < 3; k++) {
-        const double within = inside(&border[k], centre);
-        reaches =
-            reaches && (within > 0.0 || within * within < square * border[k].length_squared);
-    }
-    return reaches;
-}
-
 /* How a ball is before a face. */
 struct before {
     bool meets, is_whole; /* does it reach it?  All of the circle? */
@@ -177,14 +163,6 @@ static struct before look(const struct mesh *mesh, int face, struct vec3 centre,
     return before;
 }
 
-static enum contact_patch_kind kind_of(const struct before *before)
-{
-    if (!before->meets)
-        return CONTACT_PATCH_NONE;
-    return before->is_whole && before->height >= 0.0 ? CONTACT_PATCH_CIRCLE
-                                                     : CONTACT_PATCH_PART;
-}
-
 bool contact_patch_cut(const struct mesh *mesh, int face, struct vec3 centre, double radius,
                        struct contact_patch *patch)
 {
@@ -196,8 +174,7 @@ bool contact_patch_cut(const struct mesh *mesh, int face, struct vec3 centre, do
                             .radius = radius,
                             .height = before.height < 0.0 ? -before.height : before.height};
     const struct vec3 foot = vec3_axpy(centre, -before.height, normal);
-    patch->kind = kind_of(&before);
-    patch->height = circle.height;
+    patch->is_circle = before.is_whole && before.height >= 0.0;
     if (before.is_whole) {
         patch->area = PI * before.square;
         patch->volume = 2.0 * PI * sector_volume(&circle);

@@ -18,15 +18,8 @@
 #include "base/vec3.h"
 #include "model/mesh.h"
 
-enum contact_patch_kind {
-    CONTACT_PATCH_NONE,
-    CONTACT_PATCH_PART,   /* of the circle in which the ball meets the plane, or from behind */
-    CONTACT_PATCH_CIRCLE, /* all of it, from before */
-};
-
 struct contact_patch {
-    enum contact_patch_kind kind;
-    double height;      /* of the centre over the plane, of either side [m] */
+    bool is_circle;     /* all of that in which the ball meets the plane, from before */
     double area;        /* of the face within the ball [m2] */
     double volume;      /* of the ball behind that, in the cone from the centre; negative where
                            the face is seen from behind [m3] */
@@ -37,11 +30,6 @@ struct contact_patch {
 /* Of a face with three vertices; false where it covers nothing of it. */
 bool contact_patch_cut(const struct mesh *mesh, int face, struct vec3 centre, double radius,
                        struct contact_patch *patch);
-
-/* Whether a ball of this radius may cover something of it; near a corner it says so also where
- * it just does not. */
-bool contact_patch_reaches(const struct mesh *mesh, int face, struct vec3 centre,
-                           double radius);
 
 /* How deep a ball is in a half-space that takes this volume of it: at most its radius [m]. */
 double contact_patch_depth(double volume, double radius);

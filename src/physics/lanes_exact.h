@@ -41,6 +41,10 @@ static inline void lanes_exact_merge(struct lanes_exact *sum, int64_t n_terms,
 }
 
 #if LANES_WIDTH > 1
+/* What makes mantissas count units, 1.5 2^52 of each. */
+static const double LANES_EXACT_OFFSET[3] = {0x1.8p52 * 0x1p10, 0x1.8p52 * 0x1p-30,
+                                             0x1.8p52 * 0x1p-70};
+
 LANES_INLINE lanes_mask lanes_exact_fits(lanes term)
 {
     return (lanes)((lanes_mask)term & INT64_MAX) < lanes_all(LANES_EXACT_LIMIT);
@@ -49,12 +53,11 @@ LANES_INLINE lanes_mask lanes_exact_fits(lanes term)
 /* A term in limbs; returns it as rounded. */
 LANES_INLINE lanes lanes_exact_round(lanes term, lanes_mask limbs[3])
 {
-    static const double magic[3] = {0x1.8p52 * 0x1p10, 0x1.8p52 * 0x1p-30, 0x1.8p52 * 0x1p-70};
     lanes taken = lanes_all(0.0);
 
 #pragma GCC unroll 3
     for (int k = 0; k < 3; k++) {
-        const lanes offset = lanes_all(magic[k]);
+        const lanes offset = lanes_all(LANES_EXACT_OFFSET[k]);
         const lanes counted = term + offset, part = counted - offset;
         term -= part;
         taken += part;
@@ -70,12 +73,12 @@ typedef int64_t lanes_four_mask __attribute__((vector_size(32)));
 /* Adds a vector, below the limit, as a term. */
 LANES_INLINE void lanes_exact_add_vector(struct exact_vector *sum, lanes_four term)
 {
-    static const double magic[3] = {0x1.8p52 * 0x1p10, 0x1.8p52 * 0x1p-30, 0x1.8p52 * 0x1p-70};
     lanes_four_mask one_more = {0, 0, 0, 1};
 
 #pragma GCC unroll 3
     for (int k = 0; k < EXACT_VECTOR_LIMBS; k++) {
-        const lanes_four offset = magic[k] - (lanes_four){0}, counted = term + offset;
+        const lanes_four offset = LANES_EXACT_OFFSET[k] - (lanes_four){0},
+                         counted = term + offset;
         lanes_four_mask limb;
         term -= counted - offset;
         memcpy(&limb, sum->limb[k], sizeof limb);

@@ -66,31 +66,46 @@ LANES_INLINE lanes lanes_load_halves(const double *low, const double *high)
                          6, 7);
 }
 
-/* Four components of eight rows, from halves of rows 0 and 2, 1 and 3, 4 and 6, 5 and 7; it is
- * its own inverse but for the order of its two steps. */
-LANES_INLINE void lanes_transpose_halves(const lanes r[4], lanes c[4])
+/* Pairs of rows become pairs of components, in neighbours. */
+LANES_INLINE void lanes_pair(const lanes r[4], lanes pair[4])
 {
-    const lanes a0 = LANES_SHUFFLE(r[0], r[1], 0, 8, 2, 10, 4, 12, 6, 14),
-                a1 = LANES_SHUFFLE(r[0], r[1], 1, 9, 3, 11, 5, 13, 7, 15);
-    const lanes a2 = LANES_SHUFFLE(r[2], r[3], 0, 8, 2, 10, 4, 12, 6, 14),
-                a3 = LANES_SHUFFLE(r[2], r[3], 1, 9, 3, 11, 5, 13, 7, 15);
-    c[0] = LANES_SHUFFLE(a0, a2, 0, 1, 4, 5, 8, 9, 12, 13);
-    c[1] = LANES_SHUFFLE(a1, a3, 0, 1, 4, 5, 8, 9, 12, 13);
-    c[2] = LANES_SHUFFLE(a0, a2, 2, 3, 6, 7, 10, 11, 14, 15);
-    c[3] = LANES_SHUFFLE(a1, a3, 2, 3, 6, 7, 10, 11, 14, 15);
+#pragma GCC unroll 2
+    for (int k = 0; k < 4; k += 2) {
+        pair[k] = LANES_SHUFFLE(r[k], r[k + 1], 0, 8, 2, 10, 4, 12, 6, 14);
+        pair[k + 1] = LANES_SHUFFLE(r[k], r[k + 1], 1, 9, 3, 11, 5, 13, 7, 15);
+    }
 }
 
-/* Back: halves of rows 0 and 4, 1 and 5, 2 and 6, 3 and 7. */
-LANES_INLINE void lanes_transpose_back(const lanes c[4], lanes r[4])
+/* Four doubles from `at` of each of eight rows, as four components; and back. */
+LANES_INLINE void lanes_take_halves(const double *const at[], int from, lanes c[4])
 {
-    const lanes a0 = LANES_SHUFFLE(c[0], c[1], 0, 8, 2, 10, 4, 12, 6, 14),
-                a1 = LANES_SHUFFLE(c[0], c[1], 1, 9, 3, 11, 5, 13, 7, 15);
-    const lanes a2 = LANES_SHUFFLE(c[2], c[3], 0, 8, 2, 10, 4, 12, 6, 14),
-                a3 = LANES_SHUFFLE(c[2], c[3], 1, 9, 3, 11, 5, 13, 7, 15);
-    r[0] = LANES_SHUFFLE(a0, a2, 0, 1, 8, 9, 4, 5, 12, 13);
-    r[1] = LANES_SHUFFLE(a1, a3, 0, 1, 8, 9, 4, 5, 12, 13);
-    r[2] = LANES_SHUFFLE(a0, a2, 2, 3, 10, 11, 6, 7, 14, 15);
-    r[3] = LANES_SHUFFLE(a1, a3, 2, 3, 10, 11, 6, 7, 14, 15);
+    const lanes r[4] = {lanes_load_halves(at[0] + from, at[2] + from),
+                        lanes_load_halves(at[1] + from, at[3] + from),
+                        lanes_load_halves(at[4] + from, at[6] + from),
+                        lanes_load_halves(at[5] + from, at[7] + from)};
+    lanes pair[4];
+    lanes_pair(r, pair);
+#pragma GCC unroll 2
+    for (int k = 0; k < 2; k++) {
+        c[k] = LANES_SHUFFLE(pair[k], pair[2 + k], 0, 1, 4, 5, 8, 9, 12, 13);
+        c[2 + k] = LANES_SHUFFLE(pair[k], pair[2 + k], 2, 3, 6, 7, 10, 11, 14, 15);
+    }
+}
+
+LANES_INLINE void lanes_give_halves(double *const at[], int from, const lanes c[4])
+{
+    lanes pair[4], r[4]; /* halves of rows 0 and 4, 1 and 5, 2 and 6, 3 and 7 */
+    lanes_pair(c, pair);
+#pragma GCC unroll 2
+    for (int k = 0; k < 2; k++) {
+        r[k] = LANES_SHUFFLE(pair[k], pair[2 + k], 0, 1, 8, 9, 4, 5, 12, 13);
+        r[2 + k] = LANES_SHUFFLE(pair[k], pair[2 + k], 2, 3, 10, 11, 6, 7, 14, 15);
+    }
+#pragma GCC unroll 4
+    for (int l = 0; l < 4; l++) {
+        *(lanes_half *)(at[l] + from) = LANES_SHUFFLE(r[l], r[l], 0, 1, 2, 3);
+        *(lanes_half *)(at[l + 4] + from) = LANES_SHUFFLE(r[l], r[l], 4, 5, 6, 7);
+    }
 }
 #endif
 
@@ -98,14 +113,8 @@ LANES_INLINE void lanes_transpose_back(const lanes c[4], lanes r[4])
 LANES_INLINE void lanes_take_rows(const double *const at[], lanes row[8])
 {
 #if LANES_WIDTH == 8
-#pragma GCC unroll 2
-    for (int half = 0; half < 8; half += 4) {
-        const lanes r[4] = {lanes_load_halves(at[0] + half, at[2] + half),
-                            lanes_load_halves(at[1] + half, at[3] + half),
-                            lanes_load_halves(at[4] + half, at[6] + half),
-                            lanes_load_halves(at[5] + half, at[7] + half)};
-        lanes_transpose_halves(r, row + half);
-    }
+    lanes_take_halves(at, 0, row);
+    lanes_take_halves(at, 4, row + 4);
 #else
 #pragma GCC unroll 8
     for (int l = 0; l < LANES_WIDTH; l++)
@@ -119,16 +128,8 @@ LANES_INLINE void lanes_take_rows(const double *const at[], lanes row[8])
 LANES_INLINE void lanes_give_rows(double *const at[], lanes row[8])
 {
 #if LANES_WIDTH == 8
-#pragma GCC unroll 2
-    for (int half = 0; half < 8; half += 4) {
-        lanes r[4];
-        lanes_transpose_back(row + half, r);
-#pragma GCC unroll 4
-        for (int l = 0; l < 4; l++) {
-            *(lanes_half *)(at[l] + half) = LANES_SHUFFLE(r[l], r[l], 0, 1, 2, 3);
-            *(lanes_half *)(at[l + 4] + half) = LANES_SHUFFLE(r[l], r[l], 4, 5, 6, 7);
-        }
-    }
+    lanes_give_halves(at, 0, row);
+    lanes_give_halves(at, 4, row + 4);
 #else
     lanes_transpose(row);
 #pragma GCC unroll 8
@@ -139,38 +140,19 @@ LANES_INLINE void lanes_give_rows(double *const at[], lanes row[8])
 #endif
 }
 
-/* The first three of rows of four, of which the last is read as well. */
-LANES_INLINE void lanes_take_vectors(const double *const at[], lanes vector[3])
+/* The same of rows of four. */
+LANES_INLINE void lanes_take_fours(const double *const at[], lanes four[4])
 {
-#if LANES_WIDTH == 2
-    lanes low[2] = {lanes_load(at[0]), lanes_load(at[1])};
-    lanes high[2] = {lanes_load(at[0] + 2), lanes_load(at[1] + 2)};
-    lanes_transpose_square(low);
-    lanes_transpose_square(high);
-    vector[0] = low[0];
-    vector[1] = low[1];
-    vector[2] = high[0];
-#elif LANES_WIDTH == 4
-    lanes row[4];
-#pragma GCC unroll 4
-    for (int l = 0; l < 4; l++)
-        row[l] = lanes_load(at[l]);
-    lanes_transpose_square(row);
-#pragma GCC unroll 3
-    for (int x = 0; x < 3; x++)
-        vector[x] = row[x];
+#if LANES_WIDTH == 8
+    lanes_take_halves(at, 0, four);
 #else
-    lanes row[4];
+#pragma GCC unroll 2
+    for (int from = 0; from < 4; from += LANES_WIDTH) {
 #pragma GCC unroll 4
-    for (int l = 0; l < 4; l++)
-        row[l] = lanes_load_halves(at[l], at[l + 4]);
-    const lanes a0 = LANES_SHUFFLE(row[0], row[1], 0, 8, 2, 10, 4, 12, 6, 14),
-                a1 = LANES_SHUFFLE(row[0], row[1], 1, 9, 3, 11, 5, 13, 7, 15);
-    const lanes a2 = LANES_SHUFFLE(row[2], row[3], 0, 8, 2, 10, 4, 12, 6, 14),
-                a3 = LANES_SHUFFLE(row[2], row[3], 1, 9, 3, 11, 5, 13, 7, 15);
-    vector[0] = LANES_SHUFFLE(a0, a2, 0, 1, 8, 9, 4, 5, 12, 13);
-    vector[1] = LANES_SHUFFLE(a1, a3, 0, 1, 8, 9, 4, 5, 12, 13);
-    vector[2] = LANES_SHUFFLE(a0, a2, 2, 3, 10, 11, 6, 7, 14, 15);
+        for (int l = 0; l < LANES_WIDTH; l++)
+            four[from + l] = lanes_load(at[l] + from);
+        lanes_transpose_square(four + from);
+    }
 #endif
 }
 

@@ -336,23 +336,23 @@ static void move_all(struct simulation *sim, int substep)
 
 void deform_move(struct simulation *sim)
 {
-    double *speed = array_allocate((size_t)sim->deform.n, sizeof *speed);
+    for (int k = 0; k < sim->deform.n; k++)
+        sim->deform.list[k].speed = 0.0;
     for (int substep = 0; substep < sim->deform.substeps; substep++) {
         move_all(sim, substep);
         deform_share_tell(sim);
         deform_place(sim);
         for (int k = 0; k < sim->deform.n; k++)
-            speed[k] += sim->bodies.list[sim->deform.list[k].body].speed_max;
+            sim->deform.list[k].speed += sim->bodies.list[sim->deform.list[k].body].speed_max;
     }
     sim->deform.spent = 0.0;
     for (int k = 0; k < sim->deform.n; k++) {
         const int b = sim->deform.list[k].body;
         /* Over the step no vertex was faster than the fastest of its substeps in the mean. */
-        sim->bodies.list[b].speed_max = speed[k] / sim->deform.substeps;
+        sim->bodies.list[b].speed_max = sim->deform.list[k].speed / sim->deform.substeps;
         const double spent = sim->bodies.list[b].speed_max * sim->dt / sim->body_allowance[b];
         sim->deform.spent = spent > sim->deform.spent ? spent : sim->deform.spent;
     }
-    free(speed);
 }
 
 /* ---- What others ask

@@ -24,6 +24,7 @@ struct deform_body {
     struct solid solid;
     struct deform_share share;
     struct deform_skin skin;
+    double speed; /* of the fastest vertex here in each substep so far of the step, added up */
     int64_t first_node, first_element; /* their ids, counted over all solids */
     /* Where its nodes touch bodies (run/touch.h), one a corner of the mesh, else none: */
     int n_balls, first_ball; /* counted likewise */

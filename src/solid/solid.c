@@ -543,24 +543,6 @@ bool solid_forces(struct solid *solid, int64_t step, double dt)
     return !failed;
 }
 
-/* What is the same for all nodes: factors of (5.3). */
-struct pace {
-    double dt, keep, kick;
-    double earlier; /* share of the velocity before in the one that work is done at */
-};
-
-static struct pace pace_of(const struct solid *solid, double dt)
-{
-    const double half = 0.5 * solid->damping * dt, push = 1.0 / (1.0 + half);
-    return (struct pace){dt, (1.0 - half) * push, push * dt, 0.5};
-}
-
-static inline bool is_held(const struct solid *solid, int i)
-{
-    const int *held = solid->supports.of_node[i];
-    return (held[0] & held[1] & held[2]) >= 0; /* -1: not held */
-}
-
 /* Velocities of what is held lead to where it is.  (12.15) */
 static void hold(const struct solid *solid, int i, double dt, const double force[3],
                  struct solid_advance *advance)
@@ -588,14 +570,14 @@ static inline double force_at(const struct solid *solid, int i, int k)
 
 /* Its velocity half a step later, if nothing holds it. */
 static inline double velocity_at(const struct solid *solid, int i, int k, double force,
-                                 double per_mass, const struct pace *pace)
+                                 double per_mass, const struct solid_pace *pace)
 {
     return solid_velocity(solid, i)[k] * pace->keep +
            pace->kick * (force * per_mass + solid->gravity[k]);
 }
 
 static struct solid_advance advance_at(const struct solid *solid, int i,
-                                       const struct pace *pace)
+                                       const struct solid_pace *pace)
 {
     const double *x = solid_place(solid, i);
     const double per_mass = 1.0 / solid->mass[i];
@@ -607,14 +589,14 @@ static struct solid_advance advance_at(const struct solid *solid, int i,
         advance.place[k] = x[k] + pace->dt * advance.velocity[k];
         advance.support[k] = 0.0;
     }
-    if (is_held(solid, i))
+    if (solid_supports_hold(solid->supports.of_node[i]))
         hold(solid, i, pace->dt, force, &advance);
     return advance;
 }
 
 struct solid_advance solid_advance(const struct solid *solid, int i, double dt)
 {
-    const struct pace pace = pace_of(solid, dt);
+    const struct solid_pace pace = solid_pace_of(solid, dt);
     return advance_at(solid, i, &pace);
 }
 
@@ -645,7 +627,7 @@ void solid_velocity_now(const struct solid *solid, int i, double dt, double v[3]
 
 /* Work of a step's forces over the half step before and the one behind it.  (12.14) */
 static void count_work(struct solid *solid, int i, const struct solid_advance *advance,
-                       const struct pace *pace)
+                       const struct solid_pace *pace)
 {
     const double *before = solid_velocity(solid, i);
     double v[3], power[SOLID_N_WORKS];
@@ -657,7 +639,7 @@ static void count_work(struct solid *solid, int i, const struct solid_advance *a
     solid_supports_book(&solid->supports, i, advance->support, v, pace->dt);
 }
 
-static void move_held(struct solid *solid, int i, const struct pace *pace)
+static void move_held(struct solid *solid, int i, const struct solid_pace *pace)
 {
     const struct solid_advance advance = advance_at(solid, i, pace);
     count_work(solid, i, &advance, pace);
@@ -666,7 +648,7 @@ static void move_held(struct solid *solid, int i, const struct pace *pace)
 }
 
 /* The same, component by component, where no support has to be known. */
-static void move_free(struct solid *solid, int i, const struct pace *pace)
+static void move_free(struct solid *solid, int i, const struct solid_pace *pace)
 {
     const double mass = solid->mass[i], per_mass = 1.0 / mass;
     double *x = solid_place(solid, i), *v = solid_velocity(solid, i), *work = solid->work[i];
@@ -693,14 +675,14 @@ static void move_free(struct solid *solid, int i, const struct pace *pace)
 
 static void move(struct solid *solid, int64_t step, double dt, bool forget)
 {
-    struct pace pace = pace_of(solid, dt);
+    struct solid_pace pace = solid_pace_of(solid, dt);
     pace.earlier = step > 0 ? 0.5 : 0.0; /* nothing was done before the start */
     solid_supports_set(&solid->supports, step + 1, dt);
     for (int k = 0; k < solid->n_here; k++) {
         const int i = solid->here[k];
         if (!solid->moves[i])
             continue;
-        if (is_held(solid, i))
+        if (solid_supports_hold(solid->supports.of_node[i]))
             move_held(solid, i, &pace);
         else
             move_free(solid, i, &pace);
@@ -708,7 +690,7 @@ static void move(struct solid *solid, int64_t step, double dt, bool forget)
             memset(solid->contact[i], 0, sizeof solid->contact[i]);
     }
     if (solid->turns.n_nodes > 0)
-        solid_turns_move(solid, step, dt, forget);
+        solid_turns_move(solid, &pace, forget);
 }
 
 void solid_move(struct solid *solid, int64_t step, double dt)

@@ -57,6 +57,12 @@ static inline bool solid_support_pushes(const struct solid_support *support, int
            (direction == support->direction && !support->turns);
 }
 
+/* Of a node's entries in `of_node` or `turn_of_node`: is it held in some direction? */
+static inline bool solid_supports_hold(const int held[3])
+{
+    return (held[0] & held[1] & held[2]) >= 0; /* -1: not held */
+}
+
 void solid_supports_init(struct solid_supports *supports, int n_nodes);
 void solid_supports_clear(struct solid_supports *supports);
 

@@ -43,12 +43,6 @@ struct advance {
     double support[3]; /* moment of what holds it [N m] */
 };
 
-static inline bool is_held(const struct solid *solid, int i)
-{
-    const int *held = solid->supports.turn_of_node[i];
-    return (held[0] & held[1] & held[2]) >= 0; /* -1: not held */
-}
-
 static void hold(const struct solid *solid, int i, double dt, const double moment[3],
                  struct advance *advance)
 {
@@ -64,17 +58,6 @@ static void hold(const struct solid *solid, int i, double dt, const double momen
     }
 }
 
-/* What is the same for all nodes: factors of (5.3), with inertia for mass. */
-struct pace {
-    double dt, keep, kick;
-};
-
-static struct pace pace_of(const struct solid *solid, double dt)
-{
-    const double half = 0.5 * solid->damping * dt, push = 1.0 / (1.0 + half);
-    return (struct pace){dt, (1.0 - half) * push, push * dt};
-}
-
 /* Moment on a node about k. */
 static inline double moment_at(const struct solid_turns *turns, int i, int k)
 {
@@ -83,13 +66,14 @@ static inline double moment_at(const struct solid_turns *turns, int i, int k)
 
 /* Its angular velocity half a step later, if nothing holds it. */
 static inline double spin_at(const struct solid_turns *turns, int i, int k, double moment,
-                             double per_inertia, const struct pace *pace)
+                             double per_inertia, const struct solid_pace *pace)
 {
     return solid_turn_spin(turns, i)[k] * pace->keep + pace->kick * (moment * per_inertia);
 }
 
-/* What is held turns as prescribed. */
-static struct advance advance_at(const struct solid *solid, int i, const struct pace *pace)
+/* As nodes move, (5.3), with inertia for mass; what is held turns as prescribed. */
+static struct advance advance_at(const struct solid *solid, int i,
+                                 const struct solid_pace *pace)
 {
     const double per_inertia = 1.0 / solid->turns.inertia[i];
     struct advance advance = {{0.0}, {0.0}};
@@ -98,7 +82,7 @@ static struct advance advance_at(const struct solid *solid, int i, const struct 
         moment[k] = moment_at(&solid->turns, i, k);
         advance.spin[k] = spin_at(&solid->turns, i, k, moment[k], per_inertia, pace);
     }
-    if (is_held(solid, i))
+    if (solid_supports_hold(solid->supports.turn_of_node[i]))
         hold(solid, i, pace->dt, moment, &advance);
     return advance;
 }
@@ -126,7 +110,7 @@ double solid_turns_power(const struct solid *solid, int i, double dt, double pow
     double kinetic = 0.0;
     if (!(turns->inertia[i] > 0.0))
         return 0.0;
-    const struct pace pace = pace_of(solid, dt);
+    const struct solid_pace pace = solid_pace_of(solid, dt);
     const struct advance advance = advance_at(solid, i, &pace);
     add_power(solid, i, &advance, w, power);
     for (int k = 0; k < 3; k++)
@@ -140,17 +124,17 @@ void solid_turns_support(const struct solid *solid, int i, double dt, double mom
     memcpy(moment, none, sizeof none);
     if (solid->turns.n_nodes == 0 || !(solid->turns.inertia[i] > 0.0))
         return;
-    const struct pace pace = pace_of(solid, dt);
+    const struct solid_pace pace = solid_pace_of(solid, dt);
     const struct advance advance = advance_at(solid, i, &pace);
     memcpy(moment, advance.support, sizeof none);
 }
 
-static void move_held(struct solid *solid, int i, double earlier, const struct pace *pace)
+static void move_held(struct solid *solid, int i, const struct solid_pace *pace)
 {
     const struct advance advance = advance_at(solid, i, pace);
     double *spin = solid_turn_spin(&solid->turns, i), w[3], power[SOLID_N_WORKS] = {0.0};
     for (int k = 0; k < 3; k++)
-        w[k] = earlier * spin[k] + 0.5 * advance.spin[k];
+        w[k] = pace->earlier * spin[k] + 0.5 * advance.spin[k];
     add_power(solid, i, &advance, w, power);
     for (int k = 0; k < SOLID_N_WORKS; k++)
         solid->work[i][k] += power[k] * pace->dt;
@@ -159,7 +143,7 @@ static void move_held(struct solid *solid, int i, double earlier, const struct p
 }
 
 /* The same, component by component, where no support has to be known. */
-static void move_free(struct solid *solid, int i, double earlier, const struct pace *pace)
+static void move_free(struct solid *solid, int i, const struct solid_pace *pace)
 {
     const struct solid_turns *turns = &solid->turns;
     const double inertia = turns->inertia[i], per_inertia = 1.0 / inertia;
@@ -169,7 +153,7 @@ static void move_free(struct solid *solid, int i, double earlier, const struct p
     for (int k = 0; k < 3; k++) {
         const double before = spin[k];
         const double after = spin_at(turns, i, k, moment_at(turns, i, k), per_inertia, pace);
-        const double mean = earlier * before + 0.5 * after;
+        const double mean = pace->earlier * before + 0.5 * after;
         internal -= turns->internal[i][k] * mean;
         loads += turns->external[i][k] * mean;
         contact += turns->contact[i][k] * mean;
@@ -182,18 +166,16 @@ static void move_free(struct solid *solid, int i, double earlier, const struct p
     work[SOLID_WORK_DAMPING] += damping * pace->dt;
 }
 
-void solid_turns_move(struct solid *solid, int64_t step, double dt, bool forget)
+void solid_turns_move(struct solid *solid, const struct solid_pace *pace, bool forget)
 {
     struct solid_turns *turns = &solid->turns;
-    const double earlier = step > 0 ? 0.5 : 0.0; /* nothing was done before the start */
-    const struct pace pace = pace_of(solid, dt);
     for (int i = 0; i < solid->n_nodes; i++) {
         if (!solid->moves[i] || !(turns->inertia[i] > 0.0))
             continue;
-        if (is_held(solid, i))
-            move_held(solid, i, earlier, &pace);
+        if (solid_supports_hold(solid->supports.turn_of_node[i]))
+            move_held(solid, i, pace);
         else
-            move_free(solid, i, earlier, &pace);
+            move_free(solid, i, pace);
         if (forget)
             memset(turns->contact[i], 0, sizeof turns->contact[i]);
     }

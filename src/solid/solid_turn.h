@@ -13,6 +13,7 @@
 #include "physics/solid_element.h"
 
 struct solid;
+struct solid_pace;
 
 struct solid_turns {
     int n_nodes;                     /* of the solid; 0: none turns */
@@ -30,7 +31,7 @@ void solid_turns_clear(struct solid_turns *turns);
 void solid_turns_begin(struct solid_turns *turns, bool loaded);
 /* From the angular velocities at n - 1/2 to those at n + 1/2, and the work that was done;
  * supports are at n + 1 already.  Contacts' moments are cleared if they are to be forgotten. */
-void solid_turns_move(struct solid *solid, int64_t step, double dt, bool forget);
+void solid_turns_move(struct solid *solid, const struct solid_pace *pace, bool forget);
 /* Adds the power of what works on a node that turns as half a step earlier to `power`, of each
  * enum solid_work [W]; returns its kinetic energy in turning [J]. */
 double solid_turns_power(const struct solid *solid, int i, double dt, double power[]);

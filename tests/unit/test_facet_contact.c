@@ -1012,22 +1012,21 @@ TEST(a_skin_takes_what_the_sphere_gives)
             skin->force[v] = (struct exact_vector){{{0}}};
         search(&scene, false);
         apply(&scene);
-        struct exact_sum total[3] = {{{0}, 0, 0}};
+        struct exact_vector sum = {{{0}}};
         struct vec3 moment = {0, 0, 0};
+        double total[3];
         for (int v = 0; v < 4; v++) {
             double f[3];
-            for (int x = 0; x < 3; x++) {
-                const struct exact_sum own = exact_vector_sum(&skin->force[v], x);
-                exact_sum_merge(&total[x], &own);
-                f[x] = exact_sum_value(&own);
-            }
+            exact_vector_merge(&sum, &skin->force[v]);
+            exact_vector_value(&skin->force[v], f);
             moment = vec3_add(moment, vec3_cross(vertices[v], (struct vec3){f[0], f[1], f[2]}));
         }
+        exact_vector_value(&sum, total);
         const struct body_load *load = &scene.facets.loads[0];
         const double *force = scene.spheres.force[0].lane;
         EXPECT(force[2] > 0.0);
         for (int x = 0; x < 3; x++)
-            EXPECT_NEAR(exact_sum_value(&total[x]), -force[x], 1e-15 * force[2]);
+            EXPECT_NEAR(total[x], -force[x], 1e-15 * force[2]);
         const double torque[3] = {moment.x, moment.y, moment.z};
         for (int x = 0; x < 3; x++) {
             EXPECT_NEAR(torque[x], exact_sum_value(&load->torque[x]), 1e-4 * force[2]);
