@@ -98,7 +98,7 @@ struct facet_work {
     struct due *due;    /* of all groups */
     bool *is_busy;      /* those to be looked at in every step */
     int n_busy, *busy;  /* these, ascending */
-    bool busy_is_stale; /* is_busy has changed */
+    bool busy_is_stale; /* is_busy has changed, or what is near of them */
     double travelled;   /* by the fastest point of any body [m] */
 };
 
@@ -217,7 +217,7 @@ bool facet_contacts_meet(const struct facet_contacts *facets, const struct bodie
         if (!bodies->list[b].exists)
             continue;
         const struct mesh *mesh = &bodies->list[b].mesh;
-        facet_tree_query(&work->trees[b], mesh, centre, radius, &work->found);
+        facet_tree_query(&work->trees[b], mesh, false, centre, radius, &work->found);
         for (int k = 0; k < work->found.n; k++)
             if (contact_geometry_touches(mesh, work->found.features[k], centre, radius, &at))
                 return true;
@@ -225,9 +225,15 @@ bool facet_contacts_meet(const struct facet_contacts *facets, const struct bodie
     return false;
 }
 
-static void find_all_features(struct facet_tree_found *found, const struct mesh *mesh)
+/* Of a body that deforms spheres meet faces alone. */
+static bool meets_faces_alone(const struct body *body)
 {
-    found->n = mesh_n_features(mesh);
+    return body->skin != NULL;
+}
+
+static void find_all_features(struct facet_tree_found *found, const struct body *body)
+{
+    found->n = meets_faces_alone(body) ? body->mesh.n_faces : mesh_n_features(&body->mesh);
     ARRAY_GROW(found->features, found->n, found->capacity);
     for (int k = 0; k < found->n; k++)
         found->features[k] = k;
@@ -261,7 +267,7 @@ static int compare_features(const void *a, const void *b)
 
 /* Adds what sphere i comes near to on the other side of a periodic boundary: bodies are not
  * repeated, so each image that it may become before the next search looks for itself. */
-static void find_across(struct facet_work *work, int b, const struct mesh *mesh,
+static void find_across(struct facet_work *work, int b, const struct body *body,
                         const struct spheres *spheres, int i, double reach)
 {
     double shifts[PERIODIC_IMAGES][3];
@@ -279,7 +285,8 @@ static void find_across(struct facet_work *work, int b, const struct mesh *mesh,
         }
         if (!may_be)
             continue;
-        facet_tree_query(&work->trees[b], mesh, vec3_of(image), reach, across);
+        facet_tree_query(&work->trees[b], &body->mesh, meets_faces_alone(body), vec3_of(image),
+                         reach, across);
         for (int k = 0; k < across->n; k++) {
             ARRAY_GROW(found->features, found->n + 1, found->capacity);
             found->features[found->n++] = across->features[k];
@@ -294,21 +301,14 @@ static void find_across(struct facet_work *work, int b, const struct mesh *mesh,
     found->n = n;
 }
 
-static void find_features(struct facet_work *work, int b, const struct mesh *mesh,
+static void find_features(struct facet_work *work, int b, const struct body *body,
                           const struct spheres *spheres, int i, double body_allowance)
 {
     const double reach = sphere_reach(spheres, i) + body_allowance;
-    facet_tree_query(&work->trees[b], mesh, vec3_of(sphere_position(spheres, i)), reach,
-                     &work->found);
+    facet_tree_query(&work->trees[b], &body->mesh, meets_faces_alone(body),
+                     vec3_of(sphere_position(spheres, i)), reach, &work->found);
     if (spheres->periodic.any)
-        find_across(work, b, mesh, spheres, i, reach);
-}
-
-/* Of a body that deforms spheres meet faces alone; features ascend, faces first. */
-static void keep_faces(struct facet_tree_found *found, const struct mesh *mesh)
-{
-    while (found->n > 0 && found->features[found->n - 1] >= mesh->n_faces)
-        found->n--;
+        find_across(work, b, body, spheres, i, reach);
 }
 
 static void keep_met(const struct facet_contacts *facets, struct facet_tree_found *found, int i,
@@ -332,13 +332,11 @@ void facet_contacts_search(struct facet_contacts *facets, const struct spheres *
     int n = 0, old = 0;
     for (int i = 0; i < spheres->n_owned; i++) {
         for (int b = 0; b < bodies->n; b++) {
-            const struct mesh *mesh = &bodies->list[b].mesh;
+            const struct body *body = &bodies->list[b];
             if (all_pairs)
-                find_all_features(found, mesh);
+                find_all_features(found, body);
             else
-                find_features(work, b, mesh, spheres, i, body_allowance[b]);
-            if (bodies->list[b].skin != NULL)
-                keep_faces(found, mesh);
+                find_features(work, b, body, spheres, i, body_allowance[b]);
             keep_met(facets, found, i, b);
             for (int k = 0; k < found->n; k++)
                 list_contact(facets,
@@ -759,9 +757,8 @@ static void begin_groups(struct facet_work *work)
     work->busy = array_allocate(n, sizeof *work->busy);
     for (int g = 0; g < work->n_groups; g++)
         work->due[g] = (struct due){-(double)INFINITY, -(double)INFINITY};
-    work->n_busy = 0;
+    work->n_busy = work->standing.n = work->surveyed.n = 0;
     work->busy_is_stale = false;
-    work->standing.n = 0;
 }
 
 /* Who is looked at in groups, and who in runs: a sphere's contacts with several bodies follow
@@ -828,9 +825,30 @@ static void list_near(const struct step *step, struct group *group, struct vec3 
             work->near[group->begin + group->n_near++] = k;
 }
 
-/* Finds out which entries of a group are near.  A ball covers far more of a plane where it is
- * but a little deeper: where that makes several faces of a body that deforms near, less may
- * make it one. */
+/* How far a ball that touches none of a body's near faces is from all of them at least [m]; less
+ * than nothing where it may touch. */
+static double gap_of(const struct step *step, const struct group *group, struct vec3 centre)
+{
+    const struct facet_contact *entries = &step->facets->list[group->begin];
+    const struct body *body = &step->bodies->list[entries->body];
+    const int *near = &step->facets->work->near[group->begin];
+    double least = (double)INFINITY;
+    for (int m = 0; m < group->n_near; m++) {
+        const struct facet_contact *entry = &entries[near[m]];
+        if (facet_contact_touched(entry))
+            return 0.0;
+        body_renew_face(body, entry->feature);
+        const double distance =
+            contact_geometry_closest(&body->mesh, entry->feature, centre).distance;
+        least = distance < least ? distance : least;
+    }
+    return least - sphere_radius(step->spheres, group->sphere);
+}
+
+/* Finds out which entries of a group are near.  What faces of a body that deforms are near is
+ * looked at in every step: none are as far as the nearest is away.  A ball covers far more of a
+ * plane where it is but a little deeper: where that makes several of them near, less may make
+ * it one. */
 static void look_around(const struct step *step, struct group *group, struct vec3 centre)
 {
     const struct facet_contact *entries = &step->facets->list[group->begin];
@@ -845,9 +863,13 @@ static void look_around(const struct step *step, struct group *group, struct vec
     group->travelled = step->facets->work->travelled;
     group->slack = is_long ? NEAR_RADII * radius + NEAR_STEPS * way : (double)INFINITY;
     list_near(step, group, centre);
-    if (body->skin == NULL || group->n_near < 2)
+    if (body->skin == NULL || group->n_near == 0)
         return;
-    group->slack = CLOSE_RADII * radius + CLOSE_STEPS * way;
+    const double close = CLOSE_RADII * radius + CLOSE_STEPS * way;
+    const double gap = SLACK_TAKEN * gap_of(step, group, centre);
+    if (group->n_near == 1 && gap < close)
+        return;
+    group->slack = gap > close ? gap : close;
     list_near(step, group, centre);
 }
 
@@ -946,7 +968,7 @@ static void sort_group(const struct step *step, int g)
     if (stands)
         group->circle = add_circle(step, &work->standing, g,
                                    group->begin + work->near[group->begin], reach_of(group));
-    work->busy_is_stale = work->busy_is_stale || is_busy != work->is_busy[g];
+    work->busy_is_stale = work->busy_is_stale || is_busy || work->is_busy[g];
     work->is_busy[g] = is_busy;
 }
 
@@ -982,15 +1004,32 @@ static void examine_due(const struct step *step)
             examine(step, g);
 }
 
-static void list_busy(struct facet_work *work)
+/* All near entries of a group of which nothing else is listed. */
+static void survey(const struct step *step, int g)
 {
+    struct facet_work *work = step->facets->work;
+    const struct group *group = &work->groups[g];
+    for (int m = 0; m < group->n_near; m++)
+        (void)add_circle(step, &work->surveyed, g, group->begin + work->near[group->begin + m],
+                         reach_of(group));
+}
+
+/* Lists groups that are looked at in every step, and entries that a kernel surveys. */
+static void list_busy(const struct step *step)
+{
+    struct facet_work *work = step->facets->work;
     if (!work->busy_is_stale)
         return;
     work->busy_is_stale = false;
-    work->n_busy = 0;
-    for (int g = 0; g < work->n_groups; g++)
-        if (work->is_busy[g])
+    work->n_busy = work->surveyed.n = 0;
+    for (int g = 0; g < work->n_groups; g++) {
+        if (!work->is_busy[g])
+            continue;
+        if (may_be_seen(step, &work->groups[g]))
+            survey(step, g);
+        else
             work->busy[work->n_busy++] = g;
+    }
 }
 
 static void gather_patch(const struct step *step, const struct group *place,
@@ -1033,10 +1072,15 @@ static void press_standing(const struct step *step)
     }
 }
 
-/* A circle of a sphere for which other contacts may count before or behind. */
-static void press_circle(const struct step *step, const struct group *place, int entry)
+/* A circle of a sphere; where other contacts of it may count before or behind, now. */
+static void press_circle(const struct step *step, const struct group *place, int entry,
+                         bool is_alone)
 {
     struct facet_work *work = step->facets->work;
+    if (is_alone) {
+        add_passing(step, (int)(place - work->groups), entry);
+        return;
+    }
     if (work->batch.n > 0 && work->batch.sphere[work->batch.n - 1] == place->sphere)
         empty_batch(step);
     press_passing(step);
@@ -1058,22 +1102,13 @@ static void gather_patch(const struct step *step, const struct group *place, boo
     CHECK(may_be_circle || !patch->is_circle, "face %d: a kernel does not see a circle",
           group[patch->parts->entry].feature);
     if (patch->is_circle && !step->spheres->periodic.any)
-        press_circle(step, place, place->begin + patch->parts->entry);
+        press_circle(step, place, place->begin + patch->parts->entry,
+                     place->is_alone && patch->n_ended == 0);
     else
         for (int p = 0; p < patch->n_parts; p++)
             add_part(step, place->begin, &patch->parts[p]);
     for (int e = 0; e < patch->n_ended; e++)
         end_part(step, place->begin + patch->ended[e]);
-}
-
-/* All near entries of a group of which nothing else is listed. */
-static void survey(const struct step *step, int g)
-{
-    struct facet_work *work = step->facets->work;
-    const struct group *group = &work->groups[g];
-    for (int m = 0; m < group->n_near; m++)
-        (void)add_circle(step, &work->surveyed, g, group->begin + work->near[group->begin + m],
-                         reach_of(group));
 }
 
 /* Of the entries of a group, begin to end of the surveyed, one may be a circle and all others
@@ -1109,7 +1144,6 @@ static void decide_surveyed(const struct step *step)
             continue;
         decide(step, k, end);
     }
-    surveyed->n = 0;
 }
 
 /* The contacts of one sphere with one body. */
@@ -1123,10 +1157,7 @@ static void gather_group(const struct step *step, struct group *place)
     const struct vec3 centre = sphere_place(step->spheres, group->sphere);
     const double radius = sphere_radius(step->spheres, group->sphere);
     if (body->skin != NULL) {
-        if (may_be_seen(step, place))
-            survey(step, (int)(place - step->facets->work->groups));
-        else
-            gather_patch(step, place, true);
+        gather_patch(step, place, true);
         return;
     }
     facet_local_search(local, group, &step->facets->work->near[begin], place->n_near, mesh,
@@ -1200,7 +1231,7 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
         apply_run(&step, &work->runs[r]);
     examine_due(&step);
     press_standing(&step);
-    list_busy(work);
+    list_busy(&step);
     for (int k = 0; k < work->n_busy; k++) {
         struct group *group = &work->groups[work->busy[k]];
         if (k + AHEAD < work->n_busy)

@@ -161,13 +161,11 @@ static void add_if_near(const struct mesh *mesh, int feature, struct vec3 centre
         add_feature(found, feature);
 }
 
-/* A face that is near, and what is near of its border, each edge and vertex with its first
- * face. */
-static void add_face(const struct facet_tree *tree, const struct mesh *mesh, int f,
-                     struct vec3 centre, double reach, struct facet_tree_found *found)
+/* What is near of a face's border, each edge and vertex with its first face. */
+static void add_border(const struct facet_tree *tree, const struct mesh *mesh, int f,
+                       struct vec3 centre, double reach, struct facet_tree_found *found)
 {
     const struct mesh_face *face = &mesh->faces[f];
-    add_feature(found, f);
     for (int k = 0; k < face->n; k++) {
         if (!contact_geometry_reaches_side(mesh, f, k, centre, reach))
             continue;
@@ -190,7 +188,22 @@ static void sort_features(struct facet_tree_found *found)
     }
 }
 
-void facet_tree_query(const struct facet_tree *tree, const struct mesh *mesh,
+/* A leaf's faces that are near, with their borders. */
+static void add_leaf(const struct facet_tree *tree, const struct facet_tree_node *node,
+                     const struct mesh *mesh, bool faces_alone, struct vec3 centre,
+                     double reach, struct facet_tree_found *found)
+{
+    for (int k = node->begin; k < node->end; k++) {
+        const int f = tree->order[k];
+        if (!contact_geometry_reaches(mesh, f, centre, reach * MARGIN))
+            continue;
+        add_feature(found, f);
+        if (!faces_alone)
+            add_border(tree, mesh, f, centre, reach, found);
+    }
+}
+
+void facet_tree_query(const struct facet_tree *tree, const struct mesh *mesh, bool faces_alone,
                       struct vec3 centre, double reach, struct facet_tree_found *found)
 {
     const double wide = reach * MARGIN, widest = wide * MARGIN;
@@ -203,9 +216,7 @@ void facet_tree_query(const struct facet_tree *tree, const struct mesh *mesh,
             i = node->skip;
             continue;
         }
-        for (int k = node->begin; k < node->end; k++)
-            if (contact_geometry_reaches(mesh, tree->order[k], centre, widest))
-                add_face(tree, mesh, tree->order[k], centre, wide, found);
+        add_leaf(tree, node, mesh, faces_alone, centre, wide, found);
         i++;
     }
     const int n = mesh_n_features(mesh);

@@ -12,6 +12,8 @@
 #ifndef TREMIE_CONTACT_FACET_TREE_H
 #define TREMIE_CONTACT_FACET_TREE_H
 
+#include <stdbool.h>
+
 #include "base/vec3.h"
 #include "model/mesh.h"
 
@@ -38,9 +40,9 @@ void facet_tree_build(struct facet_tree *tree, const struct mesh *mesh);
 void facet_tree_clear(struct facet_tree *tree);
 /* Makes the boxes anew from the present place of the mesh. */
 void facet_tree_refit(struct facet_tree *tree, const struct mesh *mesh);
-/* All features of which any point lies within reach of the centre (and maybe some that are a
- * little farther), ascending, each once. */
-void facet_tree_query(const struct facet_tree *tree, const struct mesh *mesh,
+/* All features, or all faces, of which any point lies within reach of the centre (and maybe
+ * some that are a little farther), ascending, each once. */
+void facet_tree_query(const struct facet_tree *tree, const struct mesh *mesh, bool faces_alone,
                       struct vec3 centre, double reach, struct facet_tree_found *found);
 
 #endif
