@@ -81,7 +81,7 @@ struct facet_contacts {
     int n_bodies;
     double overlap_max;      /* largest overlap/radius of the last step */
     double through_max;      /* of those that come out of a thin body's other side, likewise */
-    struct facet_work *work; /* search trees and scratch, private to facet_contact.c */
+    struct facet_work *work; /* search trees and scratch: facet_work.h */
 };
 
 void facet_contacts_init(struct facet_contacts *facets, int n_bodies, enum isa isa);

@@ -102,6 +102,15 @@ def tremie_run(name, job, options, step, steps, ledger, ranks, first=0, restart=
                checkpoint_wall=sum(runtime["checkpoint.max"]))
 
 
+def stored_by_walls(cell):
+    """What walls of elements of this size store under an even pressure [J]."""
+    folder = os.path.join(WORK, "runs", "walls")
+    shutil.rmtree(folder, ignore_errors=True)
+    execute("walls", [os.path.join(BIN, "tremie"), "run", os.path.join(HERE, "walls.yaml"), "--out", folder,
+                      "--set", f"bodies.0.cell={cell}"], 1)
+    return table(folder, "series")["elastic"][-1]
+
+
 def data_bytes(checkpoint):
     """What a checkpoint's spheres and contacts take, each number as long as it is in the file: a sphere, a contact,
     all [bytes]."""

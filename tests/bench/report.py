@@ -268,11 +268,12 @@ def beside_peers(rows):
 
 # ------------------------------------------------------------------------------------------------- walls
 
-def wall_row(case, number, run, first):
-    """Of one round; `first` is the run beside it whose walls do not deform."""
+def wall_row(case, number, run, first, softness):
+    """Of one round; `first` is the run beside it whose walls do not deform, `softness` the mesh's mean deflection under
+    an even pressure over that of a fine one."""
     return {"hopper": case.name, "elements": case.what, "round": number, "steps": run.steps, "user_s": run.user,
             "over_rigid": run.user / first.user, "facets_s": run.phases["facets"], "solids_s": run.phases["solids"],
-            "machine": machine()}
+            "softness": softness, "machine": machine()}
 
 
 def keep_walls(rows):
@@ -280,12 +281,13 @@ def keep_walls(rows):
 
 
 def walls_table():
-    lines = ["| hopper | elements | user CPU time [s] | over rigid | of that facets [s] | elements [s] |", "|" + " --- |" * 6]
+    lines = ["| hopper | elements | deflection | user CPU time [s] | over rigid | of that facets [s] | elements [s] |",
+             "|" + " --- |" * 7]
     rows = read("walls")
     for name in dict.fromkeys(r["hopper"] for r in rows):
         own = [r for r in rows if r["hopper"] == name]
         user, ratio, facets, solids = ([float(r[key]) for r in own] for key in ("user_s", "over_rigid", "facets_s", "solids_s"))
-        lines.append(f"| {name} | {own[0]['elements'] or 0} | {spread(user, 1)} | {spread(ratio)} | "
+        lines.append(f"| {name} | {own[0]['elements'] or 0} | {number(own[0]['softness'])} | {spread(user, 1)} | {spread(ratio)} | "
                      f"{statistics.median(facets):.1f} | {statistics.median(solids):.1f} |")
     return lines
 

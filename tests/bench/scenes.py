@@ -326,10 +326,11 @@ CASES = [
          peers=ore_scene("fall/high.csv", (-2.7, 2.7), (-2.7, 2.7), (-0.05, 9), BOX_8768, MOVING)),
 ]
 
-# The first example with walls that do not deform, then with walls that do.
+# The first example with walls that do not deform, then with walls that do, of elements as large as this.
+WALL_CELLS = {2.1: "48", 1.3: "120", 1.1: "168", 0.8: "320"}
+FINE_CELL = 0.35  # 1496 elements
 WALLS = [
-    Case("rigid", "", os.path.join(ROOT, "jobs", "hopper.yaml"), 1e-5, 150000),
-    Case("shell, `cell: 1.1`", "168", os.path.join(ROOT, "jobs", "hopper_deformable.yaml"), 1e-5, 150000),
-    Case("shell, `cell: 2.1`", "48", os.path.join(ROOT, "jobs", "hopper_deformable.yaml"), 1e-5, 150000,
-         options=[("bodies.0.cell", 2.1)]),
+    Case("rigid", "", os.path.join(ROOT, "jobs", "hopper.yaml"), 1e-5, 150000, options=[("output.snapshots.every", 0.1)]),
+    *(Case(f"shell, `cell: {cell}`", elements, os.path.join(ROOT, "jobs", "hopper_deformable.yaml"), 1e-5, 150000,
+           options=[("bodies.0.cell", cell)]) for cell, elements in WALL_CELLS.items()),
 ]
