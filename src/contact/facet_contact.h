@@ -38,7 +38,7 @@ struct materials;
 
 struct facet_contact {
     double history[CONTACT_LANES];
-    double overlap; /* of the last facet_contacts_apply(), for its energy; not state [m] */
+    double overlap; /* of the last facet_step_apply(), for its energy; not state [m] */
     int sphere;     /* storage index of an owned sphere */
     int body;
     int feature; /* see model/mesh.h */
@@ -116,14 +116,8 @@ void facet_contacts_restore(struct facet_contacts *facets, int n,
                             const struct facet_contact_record *records,
                             const int *sphere_of_record);
 
-/* Local search and law: adds forces and torques to spheres->force, updates history, body loads
- * and overlap_max. The spheres are padded (spheres_pad). dt in s. Local. */
-void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres,
-                          const struct bodies *bodies, const struct materials *materials,
-                          double dt, bool ledger);
-
 /* Energy that contacts with bodies that exist no more held across them, before
- * facet_contacts_apply() ends these; added to `sum`. Local. */
+ * facet_step_apply() ends these; added to `sum`. Local. */
 void facet_contacts_held(const struct facet_contacts *facets, const struct spheres *spheres,
                          const struct bodies *bodies, const struct materials *materials,
                          double dt, struct exact_sum *sum);
@@ -134,7 +128,7 @@ double facet_contacts_reach(const struct facet_contacts *facets, const struct sp
                             const struct bodies *bodies, int entry);
 
 /* Elastic energy stored in facet contacts (each once, by the sphere's owner), as of the last
- * facet_contacts_apply(): that of normal springs is added to `normal`, that of springs with a
+ * facet_step_apply(): that of normal springs is added to `normal`, that of springs with a
  * memory to `springs`. Local. */
 void facet_contacts_elastic_energy(const struct facet_contacts *facets,
                                    const struct spheres *spheres, const struct bodies *bodies,

@@ -28,12 +28,12 @@ static const double SLACK_TAKEN = 0.9999; /* the rest is for rounding */
 static void add_group(struct facet_work *work, int begin, int end, int sphere, bool is_alone)
 {
     ARRAY_GROW(work->groups, work->n_groups + 1, work->group_capacity);
-    work->groups[work->n_groups++] = (struct facet_group){.begin = begin,
-                                                          .end = end,
-                                                          .sphere = sphere,
-                                                          .is_alone = is_alone,
-                                                          .circle = -1,
-                                                          .slack = -1.0};
+    work->groups[work->n_groups++] = (struct facet_work_group){.begin = begin,
+                                                               .end = end,
+                                                               .sphere = sphere,
+                                                               .is_alone = is_alone,
+                                                               .circle = -1,
+                                                               .slack = -1.0};
 }
 
 /* May the kernel find out by itself whether these touch, all that is listed of a sphere? */
@@ -118,7 +118,7 @@ static void begin_groups(struct facet_work *work)
     work->is_busy = array_allocate(n, sizeof *work->is_busy);
     work->busy = array_allocate(n, sizeof *work->busy);
     for (int g = 0; g < work->n_groups; g++)
-        work->due[g] = (struct facet_due){-(double)INFINITY, -(double)INFINITY};
+        work->due[g] = (struct facet_work_due){-(double)INFINITY, -(double)INFINITY};
     work->n_busy = work->standing.n = work->surveyed.n = 0;
     work->busy_is_stale = false;
 }
@@ -152,7 +152,7 @@ void facet_groups_list(struct facet_contacts *facets, const struct spheres *sphe
 }
 
 /* Finds out which entries of a body a ball of this radius reaches. */
-static void find_near(const struct facet_step *step, const struct body *body, int n,
+static void find_near(const struct facet_work_step *step, const struct body *body, int n,
                       const struct facet_contact *entries, struct vec3 centre, double radius,
                       bool *is_near)
 {
@@ -168,7 +168,7 @@ static void find_near(const struct facet_step *step, const struct body *body, in
 }
 
 /* Lists entries that may touch until sphere and body have moved by the group's slack. */
-static void list_near(const struct facet_step *step, struct facet_group *group,
+static void list_near(const struct facet_work_step *step, struct facet_work_group *group,
                       struct vec3 centre)
 {
     struct facet_work *work = step->facets->work;
@@ -186,9 +186,9 @@ static void list_near(const struct facet_step *step, struct facet_group *group,
             work->near[group->begin + group->n_near++] = k;
 }
 
-/* How far a ball that touches none of a body's near faces is from all of them at least [m]; less
- * than nothing where it may touch. */
-static double gap_of(const struct facet_step *step, const struct facet_group *group,
+/* How far a ball that touches none of a body's near faces is from all of them at least [m];
+ * less than nothing where it may touch. */
+static double gap_of(const struct facet_work_step *step, const struct facet_work_group *group,
                      struct vec3 centre)
 {
     const struct facet_contact *entries = &step->facets->list[group->begin];
@@ -211,7 +211,7 @@ static double gap_of(const struct facet_step *step, const struct facet_group *gr
  * looked at in every step: none are as far as the nearest is away.  A ball covers far more of a
  * plane where it is but a little deeper: where that makes several of them near, less may make
  * it one. */
-static void look_around(const struct facet_step *step, struct facet_group *group,
+static void look_around(const struct facet_work_step *step, struct facet_work_group *group,
                         struct vec3 centre)
 {
     const struct facet_contact *entries = &step->facets->list[group->begin];
@@ -238,13 +238,13 @@ static void look_around(const struct facet_step *step, struct facet_group *group
 
 /* How far a group's sphere may be from where it was, and bodies that move have travelled,
  * before the near entries are not all that may touch. */
-static double reach_of(const struct facet_group *group)
+static double reach_of(const struct facet_work_group *group)
 {
     return SLACK_TAKEN * group->slack + group->travelled;
 }
 
 /* Bodies are where they are in this step: no point of one has gone farther than this. */
-static void count_travel(const struct facet_step *step)
+static void count_travel(const struct facet_work_step *step)
 {
     double most = 0.0;
     for (int b = 0; b < step->bodies->n; b++) {
@@ -255,13 +255,14 @@ static void count_travel(const struct facet_step *step)
     step->facets->work->travelled += 1.001 * most * step->kernel_work->dt;
 }
 
-static const struct body *body_of(const struct facet_step *step,
-                                  const struct facet_group *group)
+static const struct body *body_of(const struct facet_work_step *step,
+                                  const struct facet_work_group *group)
 {
     return &step->bodies->list[step->facets->list[group->begin].body];
 }
 
-bool facet_groups_may_be_seen(const struct facet_step *step, const struct facet_group *group)
+bool facet_groups_may_be_seen(const struct facet_work_step *step,
+                              const struct facet_work_group *group)
 {
     const struct body *body = body_of(step, group);
     return body->skin != NULL && group->is_alone && !body->comes_and_goes &&
@@ -270,13 +271,13 @@ bool facet_groups_may_be_seen(const struct facet_step *step, const struct facet_
 
 /* When a group is to be looked at again: half of what is left is the body's.  In the next step
  * if nobody says how far spheres go, or where they may come out on the other side. */
-static struct facet_due due_of(const struct facet_step *step, const struct facet_group *group,
-                               double left)
+static struct facet_work_due due_of(const struct facet_work_step *step,
+                                    const struct facet_work_group *group, double left)
 {
     const double moved = step->facets->moved;
     const bool moves = body_of(step, group)->moves;
     const double own = (moves ? 0.499 : 0.999) * left;
-    struct facet_due due = {(double)INFINITY, (double)INFINITY};
+    struct facet_work_due due = {(double)INFINITY, (double)INFINITY};
     if (group->n_near > 0 && facet_groups_may_be_seen(step, group)) /* the kernel sees to it */
         return due;
     if (moves)
@@ -290,8 +291,9 @@ static struct facet_due due_of(const struct facet_step *step, const struct facet
 /* ---- Circles
  * ---------------------------------------------------------------------------------- */
 
-int facet_groups_add_circle(const struct facet_step *step, struct facet_kernel_circles *circles,
-                            int g, int entry, double reach)
+int facet_groups_add_circle(const struct facet_work_step *step,
+                            struct facet_kernel_circles *circles, int g, int entry,
+                            double reach)
 {
     struct facet_contact *contact = &step->facets->list[entry];
     const struct vec3 from = step->facets->work->groups[g].from;
@@ -305,7 +307,7 @@ int facet_groups_add_circle(const struct facet_step *step, struct facet_kernel_c
                                               .group = g});
 }
 
-static void take_standing(struct facet_work *work, struct facet_group *group)
+static void take_standing(struct facet_work *work, struct facet_work_group *group)
 {
     struct facet_kernel_circles *standing = &work->standing;
     if (group->circle < 0)
@@ -316,10 +318,10 @@ static void take_standing(struct facet_work *work, struct facet_group *group)
 }
 
 /* A group's near entries have been found. */
-static void sort_group(const struct facet_step *step, int g)
+static void sort_group(const struct facet_work_step *step, int g)
 {
     struct facet_work *work = step->facets->work;
-    struct facet_group *group = &work->groups[g];
+    struct facet_work_group *group = &work->groups[g];
     const bool stands = group->n_near == 1 && facet_groups_may_be_seen(step, group);
     const bool is_busy = !stands && (group->n_near > 0 || body_of(step, group)->comes_and_goes);
     take_standing(work, group);
@@ -330,19 +332,19 @@ static void sort_group(const struct facet_step *step, int g)
     work->is_busy[g] = is_busy;
 }
 
-void facet_groups_look_again(const struct facet_step *step, int g)
+void facet_groups_look_again(const struct facet_work_step *step, int g)
 {
     struct facet_work *work = step->facets->work;
-    struct facet_group *group = &work->groups[g];
+    struct facet_work_group *group = &work->groups[g];
     look_around(step, group, sphere_place(step->spheres, group->sphere));
     sort_group(step, g);
     work->due[g] = due_of(step, group, group->slack);
 }
 
 /* Looks at a group that is due, if its sphere has gone so far. */
-static void examine(const struct facet_step *step, int g)
+static void examine(const struct facet_work_step *step, int g)
 {
-    const struct facet_group *group = &step->facets->work->groups[g];
+    const struct facet_work_group *group = &step->facets->work->groups[g];
     const struct vec3 centre = sphere_place(step->spheres, group->sphere);
     const double travelled =
         body_of(step, group)->moves ? step->facets->work->travelled : group->travelled;
@@ -353,7 +355,7 @@ static void examine(const struct facet_step *step, int g)
         facet_groups_look_again(step, g);
 }
 
-void facet_groups_examine(const struct facet_step *step)
+void facet_groups_examine(const struct facet_work_step *step)
 {
     const struct facet_work *work = step->facets->work;
     count_travel(step);
@@ -364,17 +366,17 @@ void facet_groups_examine(const struct facet_step *step)
 }
 
 /* All near entries of a group of which nothing else is listed. */
-static void survey_group(const struct facet_step *step, int g)
+static void survey_group(const struct facet_work_step *step, int g)
 {
     struct facet_work *work = step->facets->work;
-    const struct facet_group *group = &work->groups[g];
+    const struct facet_work_group *group = &work->groups[g];
     for (int m = 0; m < group->n_near; m++)
         (void)facet_groups_add_circle(step, &work->surveyed, g,
                                       group->begin + work->near[group->begin + m],
                                       reach_of(group));
 }
 
-void facet_groups_survey(const struct facet_step *step)
+void facet_groups_survey(const struct facet_work_step *step)
 {
     struct facet_work *work = step->facets->work;
     if (!work->busy_is_stale)

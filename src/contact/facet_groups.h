@@ -22,17 +22,19 @@ struct spheres;
 void facet_groups_list(struct facet_contacts *facets, const struct spheres *spheres,
                        const struct bodies *bodies);
 /* Looks at groups whose sphere, or body, may have gone too far. */
-void facet_groups_examine(const struct facet_step *step);
+void facet_groups_examine(const struct facet_work_step *step);
 /* Finds out what is near of group g. */
-void facet_groups_look_again(const struct facet_step *step, int g);
+void facet_groups_look_again(const struct facet_work_step *step, int g);
 /* Lists groups that are looked at in every step, and entries that a kernel surveys. */
-void facet_groups_survey(const struct facet_step *step);
+void facet_groups_survey(const struct facet_work_step *step);
 
 /* May a kernel find out by itself what near entries cover? */
-bool facet_groups_may_be_seen(const struct facet_step *step, const struct facet_group *group);
+bool facet_groups_may_be_seen(const struct facet_work_step *step,
+                              const struct facet_work_group *group);
 /* Puts an entry of group g among circles that may be, as long as its sphere is within `reach`
  * of where it was; returns its place. */
-int facet_groups_add_circle(const struct facet_step *step, struct facet_kernel_circles *circles,
-                            int g, int entry, double reach);
+int facet_groups_add_circle(const struct facet_work_step *step,
+                            struct facet_kernel_circles *circles, int g, int entry,
+                            double reach);
 
 #endif

@@ -1,19 +1,5 @@
-/*
- * Forces of a step's contacts with facets: see facet_contact.h.
- *
- * Spheres that may only touch one face of one body are put together face by face, and the
- * kernel finds out for whole vectors of them whether they do. Of all others each step goes
- * through the list sphere by sphere and body by body. The local search says which contacts of
- * such a group act; these, and those that end, are gathered into a batch, in order, for which
- * the law is then taken at once; what comes of it is added contact by contact in the same
- * order. So neither the list nor the size of a batch shows in the result.
- *
- * Before a surface that deforms nearly all balls cover a circle within one triangle or nothing.
- * Those for which one triangle is near stand in a list that the kernel goes through by itself;
- * of others it is asked what their triangles are covered of, and only where that is more than
- * one circle are patches found and added up (contact/facet_patch.h).
- */
-#include "contact/facet_contact.h"
+/* See facet_step.h. */
+#include "contact/facet_step.h"
 
 #include <string.h>
 
@@ -62,11 +48,11 @@ static void make_room(struct facet_contacts *facets, int n)
 /* Gives the force of a batch's contact to the corners of a surface that deforms: that of the
  * normal spring as a pressure on the covered area, all else by the corners' weights.  The last
  * one has what is left, so that shares add up to the force but for rounding. */
-static void push_skin(const struct facet_step *step, int k)
+static void push_skin(const struct facet_work_step *step, int k)
 {
     const struct facet_work *work = step->facets->work;
     const struct body_skin *skin = step->bodies->list[work->batch.contact[k]->body].skin;
-    const struct facet_pushed *pushed = &work->pushed[k];
+    const struct facet_work_pushed *pushed = &work->pushed[k];
     if (skin == NULL || pushed->begin == pushed->end)
         return;
     const double elastic[3] = {pushed->elastic.x, pushed->elastic.y, pushed->elastic.z};
@@ -87,7 +73,7 @@ static void push_skin(const struct facet_step *step, int k)
         work->batch.contact[k]->overlap = 0.0;
 }
 
-static void empty_batch(const struct facet_step *step)
+static void empty_batch(const struct facet_work_step *step)
 {
     struct facet_kernel_batch *batch = &step->facets->work->batch;
     if (batch->n == 0)
@@ -99,7 +85,7 @@ static void empty_batch(const struct facet_step *step)
     batch->n = step->facets->work->n_corners = 0;
 }
 
-static void apply_run(const struct facet_step *step, const struct facet_kernel_run *run)
+static void apply_run(const struct facet_work_step *step, const struct facet_kernel_run *run)
 {
     make_room(step->facets, run->n);
     step->kernel.run(step->kernel_work, run);
@@ -113,7 +99,7 @@ static void put_lanes(double places[3][FACET_KERNEL_BATCH], int k, struct vec3 v
 }
 
 /* Puts a contact into the batch, of a body that does not move; returns where. */
-static int add_resting(const struct facet_step *step, int entry,
+static int add_resting(const struct facet_work_step *step, int entry,
                        const struct contact_geometry *at, double overlap)
 {
     struct facet_kernel_batch *batch = &step->facets->work->batch;
@@ -134,13 +120,13 @@ static int add_resting(const struct facet_step *step, int entry,
     batch->overlap[k] = overlap;
     batch->yield[k] = 0.0;
     batch->width[k] = facet_work_width(step->facets, contact->sphere);
-    step->facets->work->pushed[k] = (struct facet_pushed){0};
+    step->facets->work->pushed[k] = (struct facet_work_pushed){0};
     return k;
 }
 
 /* Puts a contact into the batch; one that ends has no overlap, and what its spring still held
  * is counted as lost. */
-static void add_contact(const struct facet_step *step, int entry,
+static void add_contact(const struct facet_work_step *step, int entry,
                         const struct contact_geometry *at, double overlap)
 {
     struct facet_kernel_batch *batch = &step->facets->work->batch;
@@ -161,10 +147,11 @@ static void add_contact(const struct facet_step *step, int entry,
 static const double PI = 3.14159265358979323846;
 
 /* How the covered part of the surface moves [m/s], and how easily it yields [1/kg]. */
-static void move_with_skin(const struct facet_step *step, const struct body_skin *skin, int k)
+static void move_with_skin(const struct facet_work_step *step, const struct body_skin *skin,
+                           int k)
 {
     struct facet_work *work = step->facets->work;
-    const struct facet_pushed *pushed = &work->pushed[k];
+    const struct facet_work_pushed *pushed = &work->pushed[k];
     struct vec3 velocity = {0.0, 0.0, 0.0};
     double yield = 0.0;
     for (int c = pushed->begin; c < pushed->end; c++) {
@@ -189,7 +176,7 @@ static void keep_corners(struct facet_work *work, int k, const struct facet_patc
 }
 
 /* The contact on a smooth part of the surface. (2.7) */
-static void add_part(const struct facet_step *step, int begin,
+static void add_part(const struct facet_work_step *step, int begin,
                      const struct facet_patch_part *part)
 {
     struct facet_work *work = step->facets->work;
@@ -207,15 +194,15 @@ static void add_part(const struct facet_step *step, int begin,
         work->batch.width[k] *
         contact_law_normal_force(patch->depth, curvature, work->batch.pair[k]) / plane;
     work->batch.width[k] *= facing / plane;
-    work->pushed[k] = (struct facet_pushed){.pressure = pressure,
-                                            .elastic = vec3_scale(-pressure, part->facing),
-                                            .holds_energy = part == patch->parts};
+    work->pushed[k] = (struct facet_work_pushed){.pressure = pressure,
+                                                 .elastic = vec3_scale(-pressure, part->facing),
+                                                 .holds_energy = part == patch->parts};
     keep_corners(work, k, patch, part);
     move_with_skin(step, step->bodies->list[contact->body].skin, k);
 }
 
 /* A contact that has ended, as seen from the face that it was on last. */
-static void end_part(const struct facet_step *step, int entry)
+static void end_part(const struct facet_work_step *step, int entry)
 {
     struct facet_work *work = step->facets->work;
     const struct facet_contact *contact = &step->facets->list[entry];
@@ -230,7 +217,7 @@ static void end_part(const struct facet_step *step, int entry)
 }
 
 /* What a body that is not there still holds ends. */
-static void end_group(const struct facet_step *step, int begin, int end)
+static void end_group(const struct facet_work_step *step, int begin, int end)
 {
     for (int k = begin; k < end; k++) {
         const struct facet_contact *contact = &step->facets->list[k];
@@ -248,13 +235,14 @@ static void end_group(const struct facet_step *step, int begin, int end)
  * ---------------------------------------------------------------------------------- */
 
 /* For this step alone. */
-static void add_passing(const struct facet_step *step, int g, int entry)
+static void add_passing(const struct facet_work_step *step, int g, int entry)
 {
     (void)facet_groups_add_circle(step, &step->facets->work->passing, g, entry,
                                   (double)INFINITY);
 }
 
-static void press_circles(const struct facet_step *step, struct facet_kernel_circles *circles)
+static void press_circles(const struct facet_work_step *step,
+                          struct facet_kernel_circles *circles)
 {
     make_room(step->facets, circles->n);
     circles->travelled = step->facets->work->travelled;
@@ -262,7 +250,7 @@ static void press_circles(const struct facet_step *step, struct facet_kernel_cir
     step->kernel.circles(step->kernel_work, circles);
 }
 
-static void press_passing(const struct facet_step *step)
+static void press_passing(const struct facet_work_step *step)
 {
     struct facet_kernel_circles *passing = &step->facets->work->passing;
     press_circles(step, passing);
@@ -273,8 +261,8 @@ static void press_passing(const struct facet_step *step)
 }
 
 /* A circle of a sphere; where other contacts of it may count before or behind, now. */
-static void press_circle(const struct facet_step *step, const struct facet_group *place,
-                         int entry, bool is_alone)
+static void press_circle(const struct facet_work_step *step,
+                         const struct facet_work_group *place, int entry, bool is_alone)
 {
     struct facet_work *work = step->facets->work;
     if (is_alone) {
@@ -289,8 +277,8 @@ static void press_circle(const struct facet_step *step, const struct facet_group
 }
 
 /* What a ball covers of a body that deforms. */
-static void gather_patch(const struct facet_step *step, const struct facet_group *place,
-                         bool may_be_circle)
+static void gather_patch(const struct facet_work_step *step,
+                         const struct facet_work_group *place, bool may_be_circle)
 {
     struct facet_patch *patch = &step->facets->work->patch;
     struct facet_contact *group = &step->facets->list[place->begin];
@@ -314,7 +302,7 @@ static void gather_patch(const struct facet_step *step, const struct facet_group
 
 /* All that may be circles as long as nothing has gone far.  What else balls cover, and those
  * that have gone, are looked at one by one: those from the last on, whose place others take. */
-static void press_standing(const struct facet_step *step)
+static void press_standing(const struct facet_work_step *step)
 {
     struct facet_work *work = step->facets->work;
     struct facet_kernel_circles *standing = &work->standing;
@@ -333,7 +321,7 @@ static void press_standing(const struct facet_step *step)
 
 /* Of the entries of a group, begin to end of the surveyed, one may be a circle and all others
  * nothing. */
-static void decide(const struct facet_step *step, int begin, int end)
+static void decide(const struct facet_work_step *step, int begin, int end)
 {
     struct facet_work *work = step->facets->work;
     const struct facet_kernel_circles *surveyed = &work->surveyed;
@@ -352,7 +340,7 @@ static void decide(const struct facet_step *step, int begin, int end)
         gather_patch(step, &work->groups[g], true);
 }
 
-static void decide_surveyed(const struct facet_step *step)
+static void decide_surveyed(const struct facet_work_step *step)
 {
     struct facet_kernel_circles *surveyed = &step->facets->work->surveyed;
     surveyed->travelled = step->facets->work->travelled;
@@ -367,7 +355,7 @@ static void decide_surveyed(const struct facet_step *step)
 }
 
 /* The contacts of one sphere with one body. */
-static void gather_group(const struct facet_step *step, struct facet_group *place)
+static void gather_group(const struct facet_work_step *step, struct facet_work_group *place)
 {
     const int begin = place->begin;
     struct facet_contact *group = &step->facets->list[begin];
@@ -397,7 +385,7 @@ static void gather_group(const struct facet_step *step, struct facet_group *plac
 }
 
 /* The same where only one feature is near: nothing to choose from. */
-static void gather_one(const struct facet_step *step, int entry)
+static void gather_one(const struct facet_work_step *step, int entry)
 {
     const struct facet_contact *contact = &step->facets->list[entry];
     const struct mesh *mesh = &step->bodies->list[contact->body].mesh;
@@ -415,7 +403,8 @@ static void gather_one(const struct facet_step *step, int entry)
 enum { AHEAD = 6 }; /* groups */
 
 /* Lists are longer than caches: what comes soon is asked for before. */
-static void fetch_group(const struct facet_step *step, const struct facet_group *group)
+static void fetch_group(const struct facet_work_step *step,
+                        const struct facet_work_group *group)
 {
     enum { LINE = 64 };
     const struct facet_work *work = step->facets->work;
@@ -426,9 +415,9 @@ static void fetch_group(const struct facet_step *step, const struct facet_group 
     __builtin_prefetch(&step->spheres->motion[group->sphere]);
 }
 
-void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres,
-                          const struct bodies *bodies, const struct materials *materials,
-                          double dt, bool ledger)
+void facet_step_apply(struct facet_contacts *facets, struct spheres *spheres,
+                      const struct bodies *bodies, const struct materials *materials, double dt,
+                      bool ledger)
 {
     struct facet_work *work = facets->work;
     struct facet_kernel_work kernel_work = {
@@ -442,9 +431,9 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
         .dummy = &work->dummy,
         .dt = dt,
     };
-    const struct facet_step step = {facets, spheres, bodies,
-                                    facet_kernel_choose(work->isa, materials->full, ledger),
-                                    &kernel_work};
+    const struct facet_work_step step = {
+        facets, spheres, bodies, facet_kernel_choose(work->isa, materials->full, ledger),
+        &kernel_work};
     if (!work->has_groups)
         facet_groups_list(facets, spheres, bodies);
     facets->through_max = 0.0;
@@ -454,7 +443,7 @@ void facet_contacts_apply(struct facet_contacts *facets, struct spheres *spheres
     press_standing(&step);
     facet_groups_survey(&step);
     for (int k = 0; k < work->n_busy; k++) {
-        struct facet_group *group = &work->groups[work->busy[k]];
+        struct facet_work_group *group = &work->groups[work->busy[k]];
         if (k + AHEAD < work->n_busy)
             fetch_group(&step, &work->groups[work->busy[k + AHEAD]]);
         const struct body *body = &bodies->list[facets->list[group->begin].body];

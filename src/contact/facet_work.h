@@ -1,6 +1,4 @@
-/*
- * What facet_contact.c keeps from step to step, and shares with facet_groups.c and facet_step.c.
- */
+/* What facet_contact, facet_groups and facet_step share, and keep from step to step. */
 #ifndef TREMIE_CONTACT_FACET_WORK_H
 #define TREMIE_CONTACT_FACET_WORK_H
 
@@ -16,7 +14,7 @@
 
 /* The entries of a sphere with a body, begin to end of the list; `near` numbers those from
  * begin on that may touch until the two have moved by `slack`. */
-struct facet_group {
+struct facet_work_group {
     int begin, end, n_near;
     int sphere;       /* index */
     bool is_alone;    /* nothing else is listed of the sphere */
@@ -28,12 +26,12 @@ struct facet_group {
 
 /* Until when a group's near entries are all that may touch: what facet_contacts.moved and the
  * way of the fastest body may come to. */
-struct facet_due {
+struct facet_work_due {
     double moved, travelled; /* [-], [m] */
 };
 
 /* What a batch's contact pushes of a surface that deforms. */
-struct facet_pushed {
+struct facet_work_pushed {
     int begin, end;      /* corners; none of a contact that ends */
     double pressure;     /* of the normal spring [Pa] */
     struct vec3 elastic; /* its force, on the body [N] */
@@ -50,7 +48,7 @@ struct facet_work {
     struct facet_patch patch;
     enum isa isa;
     struct facet_kernel_batch batch;
-    struct facet_pushed pushed[FACET_KERNEL_BATCH]; /* of bodies that deform */
+    struct facet_work_pushed pushed[FACET_KERNEL_BATCH]; /* of bodies that deform */
     struct facet_kernel_circles standing; /* of groups with one near entry, while that is so */
     struct facet_kernel_circles passing; /* of other groups in this step, circles for certain */
     struct facet_kernel_circles surveyed; /* entries of which one of a group may be */
@@ -66,19 +64,19 @@ struct facet_work {
     struct facet_contact **faced; /* those in runs, padded */
     int *faced_spheres;           /* theirs */
     int n_groups, group_capacity, near_capacity;
-    struct facet_group *groups;
+    struct facet_work_group *groups;
     int *near; /* of all groups, each at its entries' places */
     int is_near_capacity;
-    bool *is_near;         /* of one group */
-    struct facet_due *due; /* of all groups */
-    bool *is_busy;         /* those to be looked at in every step */
-    int n_busy, *busy;     /* these, ascending */
-    bool busy_is_stale;    /* is_busy has changed, or what is near of them */
-    double travelled;      /* by the fastest point of any body [m] */
+    bool *is_near;              /* of one group */
+    struct facet_work_due *due; /* of all groups */
+    bool *is_busy;              /* those to be looked at in every step */
+    int n_busy, *busy;          /* these, ascending */
+    bool busy_is_stale;         /* is_busy has changed, or what is near of them */
+    double travelled;           /* by the fastest point of any body [m] */
 };
 
 /* What a step's contacts need. */
-struct facet_step {
+struct facet_work_step {
     struct facet_contacts *facets;
     struct spheres *spheres;
     const struct bodies *bodies;

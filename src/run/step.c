@@ -20,6 +20,7 @@
 
 #include "base/array.h"
 #include "base/timer.h"
+#include "contact/facet_step.h"
 #include "job/job.h"
 #include "model/gravity.h"
 #include "physics/integrate.h"
@@ -176,8 +177,8 @@ void step_forces(struct simulation *sim)
         observe_before(sim);
     runtime_begin(runtime);
     const double began = timer_now();
-    facet_contacts_apply(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials, sim->dt,
-                         sim->job->energy_ledger);
+    facet_step_apply(&sim->facets, &sim->spheres, &sim->bodies, &sim->materials, sim->dt,
+                     sim->job->energy_ledger);
     touch_apply(sim);
     runtime_end(runtime, RUNTIME_FACETS);
     pair_forces(sim);

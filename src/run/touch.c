@@ -7,6 +7,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "contact/facet_step.h"
 #include "job/job.h"
 #include "model/rigid.h"
 #include "model/solid_ball.h"
@@ -403,8 +404,8 @@ void touch_apply(struct simulation *sim)
     struct touch *touch = &sim->touch;
     if (!is_on(touch))
         return;
-    facet_contacts_apply(&touch->contacts, &touch->spheres, &sim->bodies, &touch->materials,
-                         sim->dt, sim->job->energy_ledger);
+    facet_step_apply(&touch->contacts, &touch->spheres, &sim->bodies, &touch->materials,
+                     sim->dt, sim->job->energy_ledger);
     merge_loads(sim);
     for (int i = 0; i < touch->spheres.n_owned; i++)
         push_ball(sim, i);

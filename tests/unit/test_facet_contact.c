@@ -5,6 +5,7 @@
 #include "base/array.h"
 #include "check.h"
 #include "contact/facet_contact.h"
+#include "contact/facet_step.h"
 #include "job/job.h"
 #include "model/body.h"
 #include "model/material.h"
@@ -99,8 +100,8 @@ static void apply(struct scene *scene)
 {
     memset(scene->spheres.force, 0,
            (size_t)scene->spheres.n_owned * sizeof *scene->spheres.force);
-    facet_contacts_apply(&scene->facets, &scene->spheres, &scene->bodies, &scene->materials,
-                         scene->dt, true);
+    facet_step_apply(&scene->facets, &scene->spheres, &scene->bodies, &scene->materials,
+                     scene->dt, true);
 }
 
 /* Leapfrog: positions at the step, velocities half a step before. */

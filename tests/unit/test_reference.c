@@ -14,6 +14,7 @@
 #include "base/array.h"
 #include "base/report.h"
 #include "check.h"
+#include "contact/facet_step.h"
 #include "job/job.h"
 #include "model/packing.h"
 #include "physics/contact_law.h"
@@ -280,8 +281,8 @@ static void reference_step(struct reference *r)
         reference_remove_leavers(r);
     if (r->step % job->order_every == 0)
         reference_sort(r);
-    facet_contacts_apply(&r->facets, &r->spheres, &r->bodies, &r->materials, job->time.step,
-                         job->energy_ledger);
+    facet_step_apply(&r->facets, &r->spheres, &r->bodies, &r->materials, job->time.step,
+                     job->energy_ledger);
     for (int a = 0; a < r->n_here; a++) {
         for (int b = a + 1; b < r->n_here; b++)
             reference_pair(r, r->order[a], r->order[b]);
