@@ -25,4 +25,4 @@ kernel_isas = generic
 kernel_flags_generic = -DKERNEL_ISA=0
 endif
 
-CFLAGS = -std=c11 $(warnings) $(compiler_warnings) $(if $(WERROR),-Werror) $(numerics) $(flavour_flags)
+CFLAGS = -std=c11 $(warnings) $(compiler_warnings) $(if $(WERROR),-Werror) $(numerics) $(compiler_flags) $(flavour_flags)

@@ -27,7 +27,7 @@ static double (*node_areas(const struct solid *solid, const struct solid_surface
         const struct solid_surface_face *face = &surface->faces[f];
         double x[SOLID_SIDE_NODES][3] = {{0.0}}, area[SOLID_SIDE_NODES][3];
         bool here = false;
-        for (int c = 0; c < face->n; c++) {
+        for (int c = 0; c < SOLID_SIDE_NODES && c < face->n; c++) {
             here = here || solid->moves[face->nodes[c]];
             memcpy(x[c], solid_place(solid, face->nodes[c]), sizeof x[c]);
         }
