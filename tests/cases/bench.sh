@@ -34,8 +34,10 @@ awk -v energy="$(of kinetic_J suite.csv)" -v rate="$(of rate suite.csv)" -v byte
 result "the suite measures a fall"
 
 bench --walls || why+=" status $?;"
-[ "$(wc -l < walls.csv)" = 4 ] && [ "$(of over_rigid walls.csv)" = 1 ] && [ "$(of elements walls.csv)" = "" ] ||
+[ "$(wc -l < walls.csv)" = 6 ] && [ "$(of over_rigid walls.csv)" = 1 ] && [ "$(of elements walls.csv)" = "" ] ||
     why+=" walls.csv does not begin with rigid walls;"
+awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) if ($i == "softness") at = i + 1 } # a comma stands in names
+    NR > 2 { if (!($at > last && $at < 1)) exit 1; last = $at }' walls.csv || why+=" finer meshes are no softer;"
 says "cell: 2.1"
 result "walls that deform are measured beside walls that do not"
 
