@@ -72,9 +72,10 @@ struct plate_sag plate_under_force(const struct plate *plate, double force, bool
     const double s = plate->ratio, s2 = s * s, a2 = plate->span * plate->span;
     const double stiffer = hinged ? 1.0 + 0.461 * s2 * s2 : 1.0 + 0.295 * s2 * s2 * s;
     const double bend = plate_stiffness(plate);
-    struct springs springs = {.curve = 8.0 * sqrt(bedding(plate) * bend)};
+    const double half = 4.0 * sqrt(bedding(plate) * bend); /* bent as much as hooped */
+    struct springs springs = {.bend = half, .curve = half};
     if (plate->span > 0.0) {
-        springs.bend = bend * stiffer / (PUSHED[hinged] * a2);
+        springs.bend += bend * stiffer / (PUSHED[hinged] * a2);
         /* Schwerin's round membrane, 9 pi/16 E t w^3/r^2, r half the span */
         springs.stretch = 7.07 * plate->young * plate->thickness / a2;
     }

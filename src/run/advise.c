@@ -498,12 +498,15 @@ static struct share share_without(const struct job *job, const struct share *sha
     return all;
 }
 
-/* Width of an element that shows how the panel yields and, of a shell, how waves run off. */
+/* Width of an element that shows how the panel yields, how round it is (a chord of R/4 is
+ * R/128 off) and, of a shell, how waves run off. */
 static double sheet_cell(const struct subject *subject, const struct load *load, bool rings)
 {
-    enum { ACROSS = 10, A_REACH = 3 };
+    enum { ACROSS = 10, A_RADIUS = 4, A_REACH = 3 };
     const struct plate *plate = &subject->plate;
     double cell = span_of(subject) / ACROSS;
+    if (A_RADIUS * cell * plate->curvature > 1.0)
+        cell = 1.0 / (A_RADIUS * plate->curvature);
     const double reach = plate_reach(plate, load->strike.overlap, load->speed) / A_REACH;
     cell = rings && reach < cell ? reach : cell;
     return cell > plate->thickness ? cell : plate->thickness;
@@ -697,14 +700,17 @@ static const char *neglects(enum job_model model)
 static void say_advice(const struct subject *subject, const struct verdict *verdict,
                        enum job_model best, const struct price *price)
 {
+    const double *errors = verdict->errors[best];
     char error[16], how[64] = "";
     if (best == subject->body->model)
         snprintf(how, sizeof how, ", as it is");
     else if (price->cell > 0.0)
         snprintf(how, sizeof how, ", of elements of %.2g m", price->cell);
-    report_say("          advised: model: %s%s; it neglects %s, %s where %.0f %% are borne",
-               name_of(best), how, neglects(best), percent(worst_error(verdict, best), error),
-               100.0 * TOLERANCE);
+    report_say(
+        "          advised: model: %s%s; it neglects %s, %s of %s where %.0f %% are borne",
+        name_of(best), how, neglects(best), percent(worst_error(verdict, best), error),
+        errors[BED] > errors[STRIKE] ? "what yields under the bed" : "a strike",
+        100.0 * TOLERANCE);
 }
 
 static void say_models(const struct subject *subject, const struct load *load,
@@ -712,6 +718,8 @@ static void say_models(const struct subject *subject, const struct load *load,
 {
     struct price prices[N_MODELS] = {{0.0, 0.0, 0.0, 0.0}};
     enum job_model best = JOB_MODEL_SOLID;
+    report_say("          neglected of one sphere's strike: force or restitution; of a bed: "
+               "how far it and contacts yield, not the force, which is its weight");
     report_say(
         "          model     strike    bed       elements  step [s]  of rigid  cost [s]");
     for (int k = 0; k < N_MODELS; k++) {
@@ -729,35 +737,53 @@ static void say_models(const struct subject *subject, const struct load *load,
     say_advice(subject, verdict, best, &prices[best]);
 }
 
-/* A thickness as nothing has that stands in a scene: probably in other units. */
+/* What loads stretch it by: flat it becomes a bow, longer by 8/3 (w/a)^2, and round, under a
+ * bed, a wider ring, w/R.  Of a strike there is what the wall lets it be. */
+static double strain_of(const struct subject *subject, const struct load *load, double blow)
+{
+    const struct plate *plate = &subject->plate;
+    const double struck = plate_under_force(plate, blow * load->strike.force, false).deflection,
+                 loaded = under_bed(subject, load, false).deflection;
+    const double slope = (loaded > struck ? loaded : struck) / plate->span;
+    return 8.0 / 3.0 * slope * slope + loaded * plate->curvature;
+}
+
+/* Beyond this nothing holds: well past where it flows; else no sheet is so strong, steel's best
+ * wires apart, nor a hard plastic so yielding. */
+static double most_strain(const struct job_material *material)
+{
+    static const double MUCH = 0.1, STRONG = 2e9, YIELDS = 10.0; /* [-], [Pa], [-] */
+    if (material->yield > 0.0)
+        return YIELDS * material->yield / material->young;
+    return MUCH * material->young < STRONG ? MUCH : STRONG / material->young;
+}
+
+/* A thickness as nothing has that stands in a scene: probably in other units.  Bending alone
+ * does not tell: what is thin bears by stretching and what is round by its hoops (10.11);
+ * EN 1993-1-6 goes as far as R/t = 5000. */
 static void warn_of_thickness(const struct subject *subject, const struct load *load,
                               double blow)
 {
-    static const double MUCH = 0.1, YIELDS = 10.0; /* strain; that over where it flows */
-    const struct job_material *material = subject->material;
+    static const double LIKELY[2] = {1e-4, 0.25}; /* of the span */
     const struct plate *plate = &subject->plate;
-    const double t = plate->thickness, span = span_of(subject);
+    const double t = subject->body->sheet.thickness, span = span_of(subject);
+    const double radius = plate->curvature > 0.0 ? 1.0 / plate->curvature : span;
+    const double wide = radius < span ? radius : span;
     const char *name = subject->body->name;
     if (subject->body->model == JOB_MODEL_SOLID || !(t > 0.0))
         return;
-    if (!subject->is_wall)
-        report_warn("body '%s': its thickness, %.3g m, is more than a third of the %.3g m that "
-                    "it spans; is its unit right?",
+    if (t > LIKELY[1] * span)
+        report_warn("body '%s': its thickness, %.3g m, is more than a quarter of the %.3g m "
+                    "that it spans; is its unit right?",
                     name, t, span);
     if (!subject->is_wall || !(plate->span > 0.0))
         return;
-    const struct plate_sag struck = plate_under_force(plate, blow * load->strike.force, false),
-                           loaded = under_bed(subject, load, false),
-                           sag = loaded.deflection > struck.deflection ? loaded : struck;
-    const double bent = sag.deflection / sag.bending; /* if it did not stretch [m] */
-    const double slope = sag.deflection / span, strain = 8.0 / 3.0 * slope * slope;
-    const double most =
-        material->yield > 0.0 ? YIELDS * material->yield / material->young : MUCH;
-    if (subject->body->model != JOB_MODEL_MEMBRANE && bent > span)
-        report_warn("body '%s': its thickness, %.3g m, bears nothing by bending: it would have "
-                    "to bend by %.3g m, more than the %.3g m that it spans; is its unit right?",
-                    name, t, bent, span);
-    else if (strain > most)
+    const double strain = strain_of(subject, load, blow);
+    if (subject->body->model != JOB_MODEL_MEMBRANE && t < LIKELY[0] * wide)
+        report_warn("body '%s': its thickness, %.3g m, is less than a ten-thousandth of the "
+                    "%.3g m that it %s; is its unit right?",
+                    name, t, wide, radius < span ? "is round by" : "spans");
+    else if (strain > most_strain(subject->material))
         report_warn("body '%s': its thickness, %.3g m, lets loads stretch it by %.2g; is its "
                     "unit right?",
                     name, t, strain);

@@ -123,14 +123,20 @@ static double distance_to(const struct region_surface *surface, struct vec3 x, d
     return near;
 }
 
-/* "body 'bin'"; of a drawing also its file and its width, which may be in other units.  The
- * caller frees it. */
+/* "body 'bin'"; of a drawing also its file and its width, of a sheet that is thick beside its
+ * size its thickness: these may be in other units.  The caller frees it. */
 static char *name_body(const struct job_body *asked, const struct body *body)
 {
-    if (asked->file == NULL)
-        return array_format("body '%s'", body->name);
+    static const double LIKELY = 0.1; /* thickness of a sheet, of the body's size */
     const struct mesh_survey survey = mesh_survey(&body->mesh);
     const struct vec3 size = vec3_sub(survey.high, survey.low);
+    const double thickness =
+        job_deforms(asked) && asked->model != JOB_MODEL_SOLID ? asked->sheet.thickness : 0.0;
+    if (thickness > LIKELY * vec3_norm(size))
+        return array_format("body '%s', %.3g m thick (is the unit of its thickness right?),",
+                            body->name, thickness);
+    if (asked->file == NULL)
+        return array_format("body '%s'", body->name);
     const double wide = size.x > size.y ? size.x : size.y;
     const char *slash = strrchr(asked->file, '/');
     return array_format("body '%s', %s, %.3g m wide,", body->name,

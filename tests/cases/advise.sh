@@ -51,7 +51,7 @@ shell()
 # ---- A stiff wall: 40 mm. lambda = 0.1556 (10/40)^2 of Zener's table for 10 mm.
 advised --set bodies.0.thickness=40mm
 says "Zener's lambda is 0.00973"
-says "advised: model: rigid, as it is; it neglects all yielding, 1.7 % where 5 % are borne"
+says "advised: model: rigid, as it is; it neglects all yielding, 1.7 % of a strike where 5 % are borne"
 result "a stiff wall may be rigid"
 
 # ---- A wall of 10 mm in which the ball leaves waves behind: Zener's 0.768 and 0.861 of speed and force. The rigid run
@@ -132,12 +132,51 @@ result "a soft block is a solid"
 
 # ---- Thicknesses in other units, and none.
 advised --set bodies.0.thickness=10
-says "warning: body 'wall': its thickness, 10 m, is more than a third of the 0.2 m that it spans; is its unit right?"
+says "warning: body 'wall': its thickness, 10 m, is more than a quarter of the 0.2 m that it spans; is its unit right?"
 advised --set bodies.0.thickness=10um
-says "warning: body 'wall': its thickness, 1e-05 m, bears nothing by bending"
+says "warning: body 'wall': its thickness, 1e-05 m, is less than a ten-thousandth of the 0.2 m that it spans; is its unit right?"
 advised
 ! grep -q '^warning:' said || why+=" warns of 10 mm;"
 result "thicknesses in other units"
+
+# asked TEXT OPTIONS...: whether the job's thickness is asked about so, or, without a text, is not.
+asked()
+{
+    local text=$1
+    shift
+    timeout "$patience" "$bin/tremie" check "$@" --advise > said 2>&1
+    if [ -n "$text" ]; then
+        says "$text"
+    elif ! grep -q '^advise ' said || grep -Eq 'unit (of its thickness )?right' said; then
+        why+=" is refused, or asks about a thickness: $*;"
+    fi
+}
+
+# What is round bears by its hoops, and what a blow goes through may do so; the dragline's bucket beside a heap of its own.
+jobs=$scenes/../../../jobs
+hopper=$jobs/hopper_deformable.yaml
+cp "$jobs/bucket.msh" "$jobs/dragline_path.csv" .
+grep -v '^start:' "$jobs/dragline.yaml" > bucket.yaml
+heap="spheres=[{name: rock, material: shale, radius: 0.12, packing: {kind: lattice, count: 100, spacing: 0.3, corner: [6, -7.8, 1], size: [27, 15.6]}}]"
+asked "" "$hopper"
+asked "" bucket.yaml --set "$heap"
+asked "" "$scenes/through.yaml"
+asked "" "$scenes/sheet_rest.yaml"
+asked "" "$scenes/sheets.yaml"
+asked "" "$jobs/silo_wall.yaml"
+says "advised: model: shell, as it is" # not a membrane: half of what bears a blow on what is round is bending
+awk '$1 == "membrane" && $3 == "%" { n = $6 } END { exit !(n > 3.158 / (0.252 / 2)^2) }' said ||
+    why+=" advises elements of more than half the radius;"
+result "right thicknesses are not asked about"
+asked "overlaps body 'hopper', 40 m thick (is the unit of its thickness right?), by" "$hopper" --set bodies.0.thickness=40
+asked "overlaps body 'hopper', 4 m thick (is the unit of its thickness right?), by" "$hopper" --set bodies.0.thickness=4
+asked "body 'hopper': its thickness, 4e-05 m, is less than a ten-thousandth of the 4.24 m that it spans; is its unit right?" \
+    "$hopper" --set bodies.0.thickness=40um
+asked "body 'wall': its thickness, 4e-06 m, is less than a ten-thousandth of the 0.251 m that it is round by; is its unit right?" \
+    "$jobs/silo_wall.yaml" --set bodies.0.thickness=4um
+asked "body 'skin': its thickness, 0.0001 m, lets loads stretch it by" "$scenes/advise.yaml" \
+    --set bodies.0.thickness=0.1mm --set bodies.0.name=skin --set "spheres.0.velocity=[0,0,-1000]"
+result "thicknesses of jobs in other units"
 advised --set "bodies.0={name: wall, material: steel, geometry: {kind: plane, point: [0, 0, 0], normal: [0, 0, 1], extent: 0.2}}"
 says "advise    wall: nothing can be said, for how thick it is is not known; give bodies.0.thickness"
 result "no thickness"

@@ -76,6 +76,8 @@ TEST(what_is_curved_holds)
     EXPECT_NEAR(plate_under_pressure(&pipe, 1e5, true).deflection, 1e5 * 0.25 / 2.1e9, 1e-12);
     EXPECT_NEAR(plate_under_force(&pipe, 1e3, true).deflection,
                 1e3 * 0.5 * sqrt(12.0 * 0.91) / (8.0 * 2.1e11 * 1e-4), 1e-12);
+    EXPECT_NEAR(plate_under_force(&pipe, 1e3, true).bending, 0.5, 1e-12);
+    EXPECT(plate_under_pressure(&pipe, 1e5, true).bending < 1e-12);
     pipe.curvature = 0.0;
     EXPECT(isinf(plate_under_force(&pipe, 1e3, true).deflection));
 }
