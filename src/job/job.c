@@ -446,6 +446,9 @@ static void places_note(struct job *job, const struct yaml_tree_node *root)
         snprintf(list, sizeof list, "bodies.%d.thicknesses", i);
         for (int k = 0; k < body->solid.n_thicknesses; k++)
             body->solid.thicknesses[k].place = place_of(job->path, root, list, k);
+        snprintf(list, sizeof list, "bodies.%d.masses", i);
+        for (int k = 0; k < body->solid.n_masses; k++)
+            body->solid.masses[k].place = place_of(job->path, root, list, k);
     }
     for (int i = 0; i < job->output.n_probes; i++)
         job->output.probes[i].place = place_of(job->path, root, "output.probes", i);

@@ -269,6 +269,13 @@ struct job_thickness {
     struct job_place place;
 };
 
+/* What the nodes of a set bear besides the mass of their elements. */
+struct job_mass {
+    char *set;
+    double mass, inertia; /* of all of them together [kg], [kg m2] */
+    struct job_place place;
+};
+
 /* Shells or membranes on a set of a solid. */
 struct job_shell {
     char *set;
@@ -338,10 +345,11 @@ struct job_solid {
         enum job_touches what;
         double stiffness; /* of a node's spring, over what it is made of [-] */
     } touches;
-    int n_sets, n_boundary, n_thicknesses, n_shells;
+    int n_sets, n_boundary, n_thicknesses, n_shells, n_masses;
     struct job_set *sets;
     struct job_thickness *thicknesses; /* of parts of shells and membranes */
     struct job_shell *shells;          /* of a solid */
+    struct job_mass *masses;
     struct job_boundary *boundary;
     struct job_volume volume; /* Gmsh, once it has been read */
     struct solid_mesh *mesh;  /* kept by model/solid_mesh, which frees it; not a key */

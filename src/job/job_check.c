@@ -873,6 +873,11 @@ static void parts_check(const struct check *check, const struct job_body *body, 
         PATH("bodies.%d.boundary.%d", i, k);
         condition_check(check, path, job_turns(body), &solid->boundary[k]);
     }
+    for (int k = 0; k < solid->n_masses; k++) {
+        PATH("bodies.%d.masses.%d.inertia", i, k);
+        if (solid->masses[k].inertia > 0.0 && !job_turns(body))
+            mistake(check, path, "is of what does not turn; nodes of a shell are expected");
+    }
 }
 
 /* What the members of a material ask of each other. */

@@ -770,6 +770,16 @@ static const struct schema_key boundary_keys[] = {
      LIST_AT(struct job_boundary, pressures, n_pressures)},
     END};
 
+static const struct schema_key mass_keys[] = {
+    {"set", SCHEMA_TEXT, "name of a set of the body: its nodes", .required = true,
+     AT(struct job_mass, set)},
+    {"mass", SCHEMA_NUMBER, "shared evenly by the nodes of this set", .unit = "kg",
+     .required = true, ABOVE_TO(0.0, 1e12), AT(struct job_mass, mass)},
+    {"inertia", SCHEMA_NUMBER,
+     "moment of inertia about any axis, shared likewise; nodes of shells alone have it",
+     .unit = "kg m2", .standard = "0", BETWEEN(0.0, 1e12), AT(struct job_mass, inertia)},
+    END};
+
 static const struct schema_key solid_damping_keys[] = {
     {"mass", SCHEMA_NUMBER, "a force of -mass x nodal mass x velocity on each node",
      .unit = "1/s", .standard = "0", BETWEEN(0.0, 1e9),
@@ -876,6 +886,10 @@ static const struct schema_key body_keys[] = {
      .kinds = RIGID | DEFORMS, .inside = boundary_keys,
      GIVEN(struct job_body, solid.n_boundary),
      LIST_AT(struct job_body, solid.boundary, solid.n_boundary)},
+    {"masses", SCHEMA_LIST, "masses that its sets bear besides their elements' own",
+     UP_TO(1000.0), .kinds = DEFORMS, .inside = mass_keys,
+     GIVEN(struct job_body, solid.n_masses),
+     LIST_AT(struct job_body, solid.masses, solid.n_masses)},
     {"velocity", SCHEMA_NUMBER, "velocity of all its nodes at the start", .unit = "m/s",
      .standard = ZERO, BETWEEN(-FAR, FAR), .kinds = DEFORMS,
      AT(struct job_body, solid.velocity)},

@@ -108,6 +108,16 @@ static void build_solid(struct solid *solid, const struct solid_mesh *mesh,
     free(thickness);
 }
 
+static void add_masses(struct solid *solid, const struct solid_mesh *mesh,
+                       const struct job_body *body)
+{
+    for (int k = 0; k < body->solid.n_masses; k++) {
+        const struct solid_plan_mass share = solid_plan_mass(body, mesh, k);
+        for (int j = 0; j < share.set->n_nodes; j++)
+            solid_add_mass(solid, share.set->nodes[j], share.mass, share.inertia);
+    }
+}
+
 static void add_support(struct solid *solid, const struct solid_condition *condition)
 {
     static const enum solid_support_kind kinds[] = {
@@ -210,6 +220,7 @@ static void build_body(struct deform *deform, const struct simulation *sim, int 
                                 .first_ball = deform->n_balls};
     const struct solid_mesh *mesh = solid_mesh_borrow(body, &built);
     build_solid(&own->solid, mesh, body, sim->job, isa);
+    add_masses(&own->solid, mesh, body);
     prescribe(&own->solid, mesh, body);
     deform_share_init(&own->share, sim->comm, &own->solid);
     deform_skin_init(&own->skin, mesh, &sim->bodies.list[b]);

@@ -100,6 +100,11 @@ static void ground_init(struct ground *ground, const struct job *job, int b)
         for (int c = 0; c < n; c++)
             ground->mass[corners[c]] += share;
     }
+    for (int k = 0; k < ground->body->solid.n_masses; k++) {
+        const struct solid_plan_mass share = solid_plan_mass(ground->body, ground->mesh, k);
+        for (int j = 0; j < share.set->n_nodes; j++)
+            ground->mass[share.set->nodes[j]] += share.mass;
+    }
 }
 
 static void ground_clear(struct ground *ground)

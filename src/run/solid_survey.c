@@ -212,6 +212,19 @@ static void check_shell(const struct survey *survey, int k)
              path, set->name);
 }
 
+static void check_mass(const struct survey *survey, int k)
+{
+    const struct job_mass *asked = &survey->body->solid.masses[k];
+    const struct solid_mesh_set *set = solid_mesh_find(survey->mesh, asked->set);
+    char path[PATH];
+    snprintf(path, sizeof path, "bodies.%d.masses.%d.set", survey->b, k);
+    if (set == NULL)
+        refuse_set(survey, path, asked->set, asked->place);
+    else if (set->n_nodes == 0)
+        FIND(survey, asked->place, "%s: set '%s' has no nodes; some are expected", path,
+             set->name);
+}
+
 static void check_body(struct job *job, int b, struct mistakes *mistakes)
 {
     struct job_body *body = &job->bodies[b];
@@ -249,6 +262,8 @@ static void check_body(struct job *job, int b, struct mistakes *mistakes)
         check_shell(&survey, k);
     for (int k = 0; k < solid->n_thicknesses; k++)
         check_thickness(&survey, k);
+    for (int k = 0; k < solid->n_masses; k++)
+        check_mass(&survey, k);
     for (int k = 0; k < job->output.n_probes; k++)
         check_probe(&survey, k);
     check_conflicts(&survey);
@@ -349,6 +364,8 @@ static double mass_of(const struct job *job, const struct job_body *body,
     for (int e = 0; e < mesh->n_elements; e++)
         mass += solid_quality_volume(mesh, e) *
                 job->materials[solid_mesh_material(mesh, e, body->material)].density;
+    for (int k = 0; k < body->solid.n_masses; k++)
+        mass += body->solid.masses[k].mass;
     return mass;
 }
 

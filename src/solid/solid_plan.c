@@ -1,6 +1,7 @@
 /* See solid_plan.h. */
 #include "solid/solid_plan.h"
 
+#include "base/report.h"
 #include "job/job.h"
 #include "model/solid_mesh.h"
 
@@ -19,4 +20,14 @@ struct solid_plan_hourglass solid_plan_hourglass(const struct job_body *body, bo
     const bool stiff = is_sheet || body->solid.hourglass.kind == JOB_HOURGLASS_STIFFNESS;
     const double held = body->solid.hourglass.coefficient;
     return (struct solid_plan_hourglass){stiff ? held : 0.0, stiff ? 0.0 : held};
+}
+
+struct solid_plan_mass solid_plan_mass(const struct job_body *body,
+                                       const struct solid_mesh *mesh, int k)
+{
+    const struct job_mass *asked = &body->solid.masses[k];
+    const struct solid_mesh_set *set = solid_mesh_find(mesh, asked->set);
+    CHECK(set != NULL && set->n_nodes > 0, "there is no node in set '%s'", asked->set);
+    return (struct solid_plan_mass){set, asked->mass / set->n_nodes,
+                                    asked->inertia / set->n_nodes};
 }

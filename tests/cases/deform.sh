@@ -70,3 +70,30 @@ awk -F, 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }
 ' dents.csv > off
 [ ! -s off ] || why+=" of the energy $(cat off) J are found at most, at the end, in springs;"
 result "no energy out of nodes, edges and corners"
+
+# A column that bears (10 + 90) kg at rest, and a strip whose end cannot turn, so that half its period is
+# pi sqrt((M + 13/35 m) (L^3 / 12 E I + L / k G A)); free to turn it were twice that.
+run 1 masses masses
+series masses
+near "what bears the column" "$(columns 'END { print $at["column.z_max.reaction_z_N"] }')" 10 1e-3
+near "half a period of the strip" "$(columns '{
+    v = $at["tip.velocity_z_m_s"]
+    if (NR > 3 && v * last < 0) {
+        crossing = time + last / (last - v) * ($at["time_s"] - time)
+        print crossing - before
+        before = crossing
+    }
+    last = v
+    time = $at["time_s"]
+}' | tail -n 1)" 1.1154 0.01
+result "masses at ends"
+tremie 1 run "$scenes/masses.yaml" --out masses --set bodies.0.masses.0.mass=91 && why+=" resumes with another mass;"
+says "belongs to another job: bodies.0.masses.0.mass: was 90, now 91"
+result "another mass is another job"
+run 1 short masses --set time.end=0.4
+start 2 cut masses --set time.end=0.4
+wait_until_after cut 900
+kill_ranks
+run 2 cut masses --set time.end=0.4
+same_run short cut
+result "masses on 2 ranks, killed and resumed"
