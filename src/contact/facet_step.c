@@ -260,19 +260,14 @@ static void press_passing(const struct facet_work_step *step)
     passing->n = 0;
 }
 
-/* A circle of a sphere; where other contacts of it may count before or behind, now. */
-static void press_circle(const struct facet_work_step *step,
-                         const struct facet_work_group *place, int entry, bool is_alone)
+/* A circle of a sphere for which other contacts may count before or behind. */
+static void press_circle(const struct facet_work_step *step, int g, int entry)
 {
-    struct facet_work *work = step->facets->work;
-    if (is_alone) {
-        add_passing(step, (int)(place - work->groups), entry);
-        return;
-    }
-    if (work->batch.n > 0 && work->batch.sphere[work->batch.n - 1] == place->sphere)
+    const struct facet_kernel_batch *batch = &step->facets->work->batch;
+    if (batch->n > 0 && batch->sphere[batch->n - 1] == step->facets->list[entry].sphere)
         empty_batch(step);
     press_passing(step);
-    add_passing(step, (int)(place - work->groups), entry);
+    add_passing(step, g, entry);
     press_passing(step);
 }
 
@@ -290,12 +285,14 @@ static void gather_patch(const struct facet_work_step *step,
         step->facets->through_max = patch->through / radius;
     CHECK(may_be_circle || !patch->is_circle, "face %d: a kernel does not see a circle",
           group[patch->parts->entry].feature);
-    if (patch->is_circle && !step->spheres->periodic.any)
-        press_circle(step, place, place->begin + patch->parts->entry,
-                     place->is_alone && patch->n_ended == 0);
-    else
-        for (int p = 0; p < patch->n_parts; p++)
-            add_part(step, place->begin, &patch->parts[p]);
+    const bool is_circle = patch->is_circle && !step->spheres->periodic.any;
+    const int g = (int)(place - step->facets->work->groups);
+    if (is_circle && place->is_alone && patch->n_ended == 0)
+        add_passing(step, g, place->begin + patch->parts->entry);
+    else if (is_circle)
+        press_circle(step, g, place->begin + patch->parts->entry);
+    for (int p = 0; p < patch->n_parts && !is_circle; p++)
+        add_part(step, place->begin, &patch->parts[p]);
     for (int e = 0; e < patch->n_ended; e++)
         end_part(step, place->begin + patch->ended[e]);
 }

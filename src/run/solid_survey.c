@@ -184,17 +184,18 @@ static void check_probe(const struct survey *survey, int k)
         FIND(survey, probe->place, "%s: set '%s' has none; some are expected", path, name);
 }
 
-static void check_thickness(const struct survey *survey, int k)
+/* The set that item k of a list of the body names: it has some of these. */
+static void check_named(const struct survey *survey, const char *list, int k, const char *name,
+                        struct job_place place, bool nodes)
 {
-    const struct job_thickness *asked = &survey->body->solid.thicknesses[k];
-    const struct solid_mesh_set *set = solid_mesh_find(survey->mesh, asked->set);
+    const struct solid_mesh_set *set = solid_mesh_find(survey->mesh, name);
     char path[PATH];
-    snprintf(path, sizeof path, "bodies.%d.thicknesses.%d.set", survey->b, k);
+    snprintf(path, sizeof path, "bodies.%d.%s.%d.set", survey->b, list, k);
     if (set == NULL)
-        refuse_set(survey, path, asked->set, asked->place);
-    else if (set->n_elements == 0)
-        FIND(survey, asked->place, "%s: set '%s' has no elements; some are expected", path,
-             set->name);
+        refuse_set(survey, path, name, place);
+    else if ((nodes ? set->n_nodes : set->n_elements) == 0)
+        FIND(survey, place, "%s: set '%s' has no %s; some are expected", path, set->name,
+             nodes ? "nodes" : "elements");
 }
 
 static void check_shell(const struct survey *survey, int k)
@@ -210,19 +211,6 @@ static void check_shell(const struct survey *survey, int k)
              "%s: set '%s' has no sides on the surface that a shell could lie on; some are "
              "expected",
              path, set->name);
-}
-
-static void check_mass(const struct survey *survey, int k)
-{
-    const struct job_mass *asked = &survey->body->solid.masses[k];
-    const struct solid_mesh_set *set = solid_mesh_find(survey->mesh, asked->set);
-    char path[PATH];
-    snprintf(path, sizeof path, "bodies.%d.masses.%d.set", survey->b, k);
-    if (set == NULL)
-        refuse_set(survey, path, asked->set, asked->place);
-    else if (set->n_nodes == 0)
-        FIND(survey, asked->place, "%s: set '%s' has no nodes; some are expected", path,
-             set->name);
 }
 
 static void check_body(struct job *job, int b, struct mistakes *mistakes)
@@ -261,9 +249,10 @@ static void check_body(struct job *job, int b, struct mistakes *mistakes)
     for (int k = 0; k < solid->n_shells; k++)
         check_shell(&survey, k);
     for (int k = 0; k < solid->n_thicknesses; k++)
-        check_thickness(&survey, k);
+        check_named(&survey, "thicknesses", k, solid->thicknesses[k].set,
+                    solid->thicknesses[k].place, false);
     for (int k = 0; k < solid->n_masses; k++)
-        check_mass(&survey, k);
+        check_named(&survey, "masses", k, solid->masses[k].set, solid->masses[k].place, true);
     for (int k = 0; k < job->output.n_probes; k++)
         check_probe(&survey, k);
     check_conflicts(&survey);
