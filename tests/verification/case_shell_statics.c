@@ -31,13 +31,13 @@ int main(int argc, char **argv)
                shells_cylinder(triangle, 16, 1.0), 0.08, VERIFY_RELATIVE, "mesh");
     verify_source("twisted beam: .005424 along the tip's width");
     verify_row("beam, 2 x 12 quadrilaterals, pulled along the width", "m", 0.005424,
-               shells_beam(quad, 2, 1.0, 1), 0.02, VERIFY_RELATIVE, "mesh");
+               shells_beam(quad, 2, 0.32, 1), 0.02, VERIFY_RELATIVE, "mesh");
     verify_row("beam, 2 x 12 x 2 triangles, pulled along the width", "m", 0.005424,
-               shells_beam(triangle, 2, 1.0, 1), 0.02, VERIFY_RELATIVE, "mesh");
+               shells_beam(triangle, 2, 0.32, 1), 0.02, VERIFY_RELATIVE, "mesh");
     verify_source("twisted beam: .001754 along its thickness");
     verify_row("beam, 2 x 12 quadrilaterals, pulled along the thickness", "m", 0.001754,
-               shells_beam(quad, 2, 1.0, 2), 0.05, VERIFY_RELATIVE, "mesh");
+               shells_beam(quad, 2, 0.32, 2), 0.05, VERIFY_RELATIVE, "mesh");
     verify_row("beam, 2 x 12 x 2 triangles, pulled along the thickness", "m", 0.001754,
-               shells_beam(triangle, 2, 1.0, 2), 0.17, VERIFY_RELATIVE, "mesh");
+               shells_beam(triangle, 2, 0.32, 2), 0.17, VERIFY_RELATIVE, "mesh");
     return verify_end();
 }
