@@ -120,8 +120,8 @@ fuzzers: $(fuzzers)
 ##  make verify       compare with theory and publications; writes tests/verification/README.md
 verify:
 	@config/setup test
-	@$(MAKE) --no-print-directory verification_cases
-	@BUILD='$(BUILD)' tests/verification/run
+	@$(MAKE) --no-print-directory all verification_cases
+	@BUILD='$(BUILD)' BIN='$(BIN)' tests/verification/run
 
 ##  make stability    where methods fail: measures limits of the step; writes tests/stability/README.md
 stability:

@@ -1,0 +1,166 @@
+/*
+ * A silo whose wall is a shell, jobs/silo_wall.yaml as users run it: what grain presses on the
+ * wall, and what the wall bears, from the run's files and tremie-profile.
+ */
+/* long */
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "base/array.h"
+#include "base/report.h"
+#include "verify.h"
+
+/* Of the job. */
+static const double GRAVITY = 9.81, GRAIN = 350.0, RADIUS = 0.252, INSIDE = 0.25, THICK = 0.004,
+                    WALL_DENSITY = 950.0, FRICTION = 0.4;
+
+enum { SLICES = 10 }; /* of the wall's height, from the top */
+
+struct slice {
+    double depth, hoop, upright, pressure; /* [m], [Pa]; tension and pressure positive */
+};
+
+struct silo {
+    double borne; /* by wall, floor and what stands above, grain at rest [N] */
+    double foot;  /* of the wall, less what grain puts on it [N] */
+    double density;
+    struct slice slices[SLICES];
+};
+
+static void shell(const char *command)
+{
+    CHECK(system(command) == 0, "'%s' does not end well", command);
+}
+
+static FILE *open_table(const char *folder, const char *name)
+{
+    char *path = array_format("%s/%s", folder, name);
+    FILE *file = fopen(path, "r");
+    CHECK(file != NULL, "there is no %s", path);
+    free(path);
+    return file;
+}
+
+/* Where a column stands in the line that names them. */
+static int column(const char *head, const char *name)
+{
+    int at = 0;
+    const size_t length = strlen(name);
+    for (const char *c = head; c != NULL; c = strchr(c, ','), c = c == NULL ? c : c + 1, at++)
+        if (strncmp(c, name, length) == 0 && strchr(",\n", c[length]) != NULL)
+            return at;
+    CHECK(false, "no column '%s' in %s", name, head);
+    return -1;
+}
+
+static double cell(const char *line, int at)
+{
+    for (; at > 0; at--)
+        line = strchr(line, ',') + 1;
+    return strtod(line, NULL);
+}
+
+enum { LINE = 8192 };
+
+static void read_series(const char *folder, struct silo *silo)
+{
+    char head[LINE], line[LINE];
+    FILE *file = open_table(folder, "series.csv");
+    CHECK(fgets(head, LINE, file) != NULL, "no series");
+    while (fgets(line, LINE, file) != NULL && cell(line, column(head, "time_s")) < 1.979)
+        ;
+    const double wall = cell(line, column(head, "wall.force_z_N"));
+    silo->borne = -wall - cell(line, column(head, "floor.force_z_N")) -
+                  cell(line, column(head, "above.force_z_N"));
+    silo->foot = cell(line, column(head, "wall.base.reaction_z_N")) + wall;
+    silo->density = cell(line, column(head, "middle.mass_kg")) / (M_PI * INSIDE * INSIDE);
+    fclose(file);
+}
+
+static void read_slices(const char *folder, struct slice slices[SLICES])
+{
+    char head[LINE], line[LINE];
+    FILE *file = open_table(folder, "wall.csv");
+    CHECK(fgets(head, LINE, file) != NULL, "no slices");
+    for (int k = 0; k < SLICES; k++) {
+        CHECK(fgets(line, LINE, file) != NULL, "a slice is missing");
+        slices[k] = (struct slice){cell(line, column(head, "depth_m")),
+                                   cell(line, column(head, "stress_xx_Pa")) +
+                                       cell(line, column(head, "stress_yy_Pa")),
+                                   cell(line, column(head, "stress_zz_Pa")),
+                                   -cell(line, column(head, "contact_pressure_Pa"))};
+    }
+    fclose(file);
+}
+
+/* Runs the job; before MPI starts here, which programs that it starts would not like. */
+static void run(struct silo *silo)
+{
+    const char *bin = getenv("BIN"), *scratch = getenv("TMPDIR");
+    CHECK(bin != NULL, "BIN does not say where the programs are");
+    char *folder = array_format("%s/tremie-silo.XXXXXX", scratch != NULL ? scratch : "/tmp");
+    CHECK(mkdtemp(folder) != NULL, "no folder %s", folder);
+    char *command = array_format(
+        "exec > %s/said 2>&1; set -e; %s/tremie run jobs/silo_wall.yaml --out %s/run; "
+        "%s/tremie-info %s/run --csv %s/series.csv; "
+        "%s/tremie-profile %s/run --body wall --since 2.3 --slices %d --csv %s/wall.csv",
+        folder, bin, folder, bin, folder, folder, bin, folder, SLICES, folder);
+    shell(command);
+    free(command);
+    read_series(folder, silo);
+    read_slices(folder, silo->slices);
+    command = array_format("rm -r %s", folder);
+    shell(command);
+    free(command);
+    free(folder);
+}
+
+/* What grain that slides pulls the wall down with from slice a to slice b [Pa]. */
+static double friction(const struct slice *slices, int a, int b)
+{
+    const double growth =
+        (slices[a].upright - slices[b].upright) / (slices[b].depth - slices[a].depth);
+    return (growth - WALL_DENSITY * GRAVITY) * THICK;
+}
+
+static double mean_pressure(const struct slice *slices, int a, int b)
+{
+    double sum = 0.0;
+    for (int k = a; k <= b; k++)
+        sum += slices[k].pressure;
+    return sum / (b - a + 1);
+}
+
+int main(int argc, char **argv)
+{
+    struct silo silo;
+    run(&silo);
+    const struct slice *slices = silo.slices;
+    verify_begin(argc, argv, "A silo with a wall of shells (`jobs/silo_wall.yaml`)", "statics");
+    verify_row("grain at rest: borne by wall, floor and what stands above", "N",
+               GRAIN * GRAVITY, silo.borne, 2e-4, VERIFY_RELATIVE, "it still settles");
+    verify_row("grain at rest: the wall's foot, less what grain puts on the wall", "N",
+               WALL_DENSITY * 2.0 * M_PI * RADIUS * 2.0 * THICK * GRAVITY, silo.foot, 0.004,
+               VERIFY_RELATIVE, "24 sides, not round");
+    verify_source("a pipe: p R / t");
+    for (int k = 0; k < SLICES - 1; k++) { /* the last one is held by the foot */
+        char text[128];
+        snprintf(text, sizeof text, "hoop stress %.1f m below the top", slices[k].depth);
+        verify_row(text, "Pa", slices[k].pressure * RADIUS / THICK, slices[k].hoop, 0.04,
+                   VERIFY_RELATIVE, "bending, 24 sides, instants 20 ms apart");
+    }
+    verify_source("Janssen, Z. VDI 39, 1895, 1045");
+    const double at_most = silo.density * GRAVITY * INSIDE / 2.0;
+    const double mobilised = friction(slices, 2, 8) / mean_pressure(slices, 2, 8);
+    verify_row("friction on the wall over pressure, 0.5 to 1.7 m below the top", "", FRICTION,
+               mobilised, 0.0, VERIFY_AT_MOST, "grain slides, some of it rolls");
+    verify_row("pressure 1.3 to 1.7 m below the top", "Pa", at_most / mobilised,
+               mean_pressure(slices, 6, 8), 0.1, VERIFY_RELATIVE,
+               "grain bridges from side to side, 12 spheres");
+    verify_row("pressure 1.7 m below the top over that of a liquid as heavy", "", 0.25,
+               slices[8].pressure / (silo.density * GRAVITY * slices[8].depth), 0.0,
+               VERIFY_AT_MOST, "a limit is reached");
+    return verify_end();
+}
