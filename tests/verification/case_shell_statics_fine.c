@@ -16,8 +16,8 @@ struct published {
     double given[MESHES], within[MESHES];
 };
 
-/* S4R has one point in the plane and hourglass control, as ours; the others, integrated in full,
- * find shear along sides. */
+/* S4R has one point in the plane and hourglass control, as ours; the others, integrated in
+ * full, find shear along sides. */
 #define ABAQUS     "Abaqus 6.6 Benchmarks Manual 2.3.7"
 #define KO         "Ko, Lee, Lee, Bathe, Comput. Struct. 193, 2017, 187"
 #define OPTISTRUCT "OptiStruct, verification problem OS-V 0730"
@@ -50,7 +50,7 @@ static void beside(const char *name, const struct published *other, const double
     }
 }
 
-/* A thin beam is as warped as a thick one, and what is wrong with warped elements tells more. */
+/* A thin beam is as warped as a thick one, so what is wrong with warped elements tells more. */
 static void thin_beam(void)
 {
     static const char *const names[2] = {
