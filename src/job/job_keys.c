@@ -67,10 +67,17 @@ static const char *const directions[] = {"x", "y", "z", NULL};
 static const char *const leavers[] = {"stop", "remove", "ignore", NULL};
 static const char *const weights[] = {"contacts", "candidates", NULL};
 /* In the order of enum snapshot_field. */
-static const char *const solid_fields[] = {
-    "displacement", "velocity",  "contact_force",    "contact_pressure",
-    "stress",       "von_mises", "principal_stress", "plastic_strain",
-    "alive",        NULL};
+static const char *const solid_fields[] = {"displacement",
+                                           "velocity",
+                                           "contact_force",
+                                           "contact_pressure",
+                                           "stress",
+                                           "von_mises",
+                                           "principal_stress",
+                                           "plastic_strain",
+                                           "thickness",
+                                           "alive",
+                                           NULL};
 static const char *const snapshot_fields[] = {"velocity",
                                               "angular_velocity",
                                               "force",
@@ -1167,9 +1174,10 @@ static const struct schema_key snapshots_keys[] = {
      .standard = "false", AT(struct job, output.snapshots.contacts)},
     {"solids", SCHEMA_CHOICES,
      "what is kept of each deformable body besides its places; of nodes: displacement, velocity, "
-     "contact_force and contact_pressure, of that instant; of elements: the others",
+     "contact_force and contact_pressure, of that instant; of elements: the others, of shells and "
+     "membranes alone their thickness",
      .standard = "[displacement, velocity, contact_force, contact_pressure, stress, von_mises, "
-                 "principal_stress, plastic_strain, alive]",
+                 "principal_stress, plastic_strain, thickness, alive]",
      .choices = solid_fields, AT(struct job, output.snapshots.solids)},
     {"compress", SCHEMA_CHOICE,
      "whether numbers are packed, which loses nothing, takes about half the space and several "

@@ -101,6 +101,8 @@ static void put_element(const struct solid *solid, int e, struct table *table)
 {
     const struct solid_element_state *state = &solid->state[e];
     const double mises = solid_mises(solid, e);
+    const double thickness =
+        shell_element_is(solid->shape[e]) ? solid->shell[e].thickness : 0.0;
     const int64_t id = e;
     double principal[3];
     principal_values(state->stress, principal);
@@ -110,6 +112,7 @@ static void put_element(const struct solid *solid, int e, struct table *table)
         [SNAPSHOT_ELEMENT_VON_MISES] = &mises,
         [SNAPSHOT_ELEMENT_PRINCIPAL_STRESS] = principal,
         [SNAPSHOT_ELEMENT_PLASTIC_STRAIN] = &state->plastic_strain,
+        [SNAPSHOT_ELEMENT_THICKNESS] = &thickness,
         [SNAPSHOT_ELEMENT_ALIVE] = &solid->alive[e],
     };
     put_row(table, snapshot_element_fields, SNAPSHOT_N_ELEMENT_FIELDS, values);
@@ -195,10 +198,10 @@ static void add_solid(struct simulation *sim, struct deform_body *deform,
     const struct body *body = &sim->bodies.list[deform->body];
     struct solid *solid = &deform->solid;
     struct solid_surface surface = {0};
-    struct snapshot_solid *shown =
-        snapshot_add_solid(snapshot, body->name, job->output.snapshots.solids,
-                           job->output.snapshots.precision == JOB_PRECISION_SINGLE,
-                           job->output.snapshots.compress == JOB_COMPRESS_LOSSLESS);
+    struct snapshot_solid *shown = snapshot_add_solid(
+        snapshot, body->name, job->output.snapshots.solids, solid->shell != NULL,
+        job->output.snapshots.precision == JOB_PRECISION_SINGLE,
+        job->output.snapshots.compress == JOB_COMPRESS_LOSSLESS);
     shown->material = array_string(job->materials[body->material].name);
     shown->n_nodes = solid->n_nodes;
     shown->n_elements = solid->n_elements;

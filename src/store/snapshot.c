@@ -74,6 +74,9 @@ const struct field snapshot_element_fields[SNAPSHOT_N_ELEMENT_FIELDS] = {
                                            FIELD_DOUBLE, 3, 0},
     [SNAPSHOT_ELEMENT_PLASTIC_STRAIN] = {"plastic_strain", "1", "equivalent plastic strain",
                                          FIELD_DOUBLE, 1, 0},
+    [SNAPSHOT_ELEMENT_THICKNESS] = {"thickness", "m",
+                                    "of shells and membranes, 0 of other elements beside them",
+                                    FIELD_DOUBLE, 1, 0},
     [SNAPSHOT_ELEMENT_ALIVE] = {"alive", "1", "1: it resists; 0: it has failed", FIELD_INT32, 1,
                                 0},
 };
@@ -179,14 +182,16 @@ static struct snapshot_solid *append_solid(struct snapshot *snapshot, const char
 }
 
 struct snapshot_solid *snapshot_add_solid(struct snapshot *snapshot, const char *name,
-                                          int fields, bool single, bool packed)
+                                          int fields, bool sheets, bool single, bool packed)
 {
     enum { N_NODE_CHOICES = SNAPSHOT_N_NODE_FIELDS - SNAPSHOT_NODE_FIRST_CHOICE };
+    enum { THICKNESS = 1 << (SNAPSHOT_ELEMENT_THICKNESS - SNAPSHOT_ELEMENT_FIRST_CHOICE) };
+    const int of_elements = fields >> N_NODE_CHOICES & (sheets ? ~0 : ~THICKNESS);
     struct snapshot_solid *solid = append_solid(snapshot, name);
     add_columns(&solid->nodes, snapshot_node_fields, SNAPSHOT_N_NODE_FIELDS,
                 SNAPSHOT_NODE_FIRST_CHOICE, fields, single);
     add_columns(&solid->elements, snapshot_element_fields, SNAPSHOT_N_ELEMENT_FIELDS,
-                SNAPSHOT_ELEMENT_FIRST_CHOICE, fields >> N_NODE_CHOICES, single);
+                SNAPSHOT_ELEMENT_FIRST_CHOICE, of_elements, single);
     solid->nodes.packed = solid->elements.packed = packed;
     return solid;
 }

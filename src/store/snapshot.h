@@ -90,6 +90,7 @@ enum snapshot_element_field {
     SNAPSHOT_ELEMENT_VON_MISES,
     SNAPSHOT_ELEMENT_PRINCIPAL_STRESS,
     SNAPSHOT_ELEMENT_PLASTIC_STRAIN,
+    SNAPSHOT_ELEMENT_THICKNESS, /* where there are shells or membranes */
     SNAPSHOT_ELEMENT_ALIVE,
     SNAPSHOT_N_ELEMENT_FIELDS,
     SNAPSHOT_ELEMENT_FIRST_CHOICE = SNAPSHOT_ELEMENT_STRESS,
@@ -153,9 +154,10 @@ struct snapshot {
 void snapshot_init(struct snapshot *snapshot, int fields, bool contacts, bool single,
                    bool packed);
 void snapshot_clear(struct snapshot *snapshot);
-/* Adds a solid of this name, whose tables have the columns of these fields.  Local. */
+/* Adds a solid of this name, whose tables have the columns of these fields; `sheets`: some of
+ * its elements are shells or membranes.  Local. */
 struct snapshot_solid *snapshot_add_solid(struct snapshot *snapshot, const char *name,
-                                          int fields, bool single, bool packed);
+                                          int fields, bool sheets, bool single, bool packed);
 /* Adds a name to a list with one a line, which it takes; the caller frees the new one.
  * Local. */
 char *snapshot_add_name(char *names, const char *name);

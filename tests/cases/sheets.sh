@@ -59,6 +59,11 @@ assert abs(last["balance"]) < 3e-4 * turned, last["balance"] / turned
 strain = states[-1]["elements/plastic_strain"][()]
 assert (strain[:300] > 0.0).sum() > 100, "the bin does not yield"  # all elements of the bin come first
 assert abs(states[-1]["nodes/angular_velocity"][()]).max() > 1.0
+shown = h5py.File(sys.argv[1] + "/snapshots/step_000000001000.h5")["solids"]
+thickness = [thick for name in ("bin", "cloth", "blade") for thick in shown[name]["elements/thickness"][()]]
+before = states[-1]["elements/thickness"][()]  # snapshots show the step's own strain as well
+assert abs(thickness - before).max() < 1e-3 * before.min(), "snapshots show another thickness than checkpoints"
+assert min(thickness[:300]) < 0.99 * 0.004, "the bin's steel, 4 and 6 mm thick, does not thin"
 touched = set().union(*(set(state["facet_contacts/body"][()]) for state in states))
 assert touched == {0, 1, 2}, f"only bodies {touched} are touched"
 assert last["bin.force_x"] != 0.0 and abs(last["blade.top.work"]) > 1.0
