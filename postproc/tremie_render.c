@@ -91,12 +91,6 @@ static int find_values(const struct scene *scene, const struct wishes *wishes, c
     return status;
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double p = *(const double *)a, q = *(const double *)b;
-    return (p > q) - (p < q);
-}
-
 /* The value below which this share of n sorted values lies. */
 static double quantile(const double *sorted, int n, double share)
 {
@@ -109,7 +103,7 @@ static void find_range(const struct wishes *wishes, int n, const double *values,
 {
     double *sorted = array_allocate((size_t)n, sizeof *sorted);
     memcpy(sorted, values, (size_t)n * sizeof *sorted);
-    qsort(sorted, (size_t)n, sizeof *sorted, compare_doubles);
+    qsort(sorted, (size_t)n, sizeof *sorted, array_compare_doubles);
     range[0] = n > 0 ? sorted[0] : 0.0;
     range[1] = n > 0 ? sorted[n - 1] : 1.0;
     if (wishes->by == BY_SPEED) {
@@ -154,7 +148,7 @@ static void find_extent(const struct spheres *spheres, double least[3], double m
     for (int k = 0; k < 3; k++) {
         for (int i = 0; i < n; i++)
             sorted[i] = sphere_position(spheres, i)[k];
-        qsort(sorted, (size_t)n, sizeof *sorted, compare_doubles);
+        qsort(sorted, (size_t)n, sizeof *sorted, array_compare_doubles);
         const double low = quantile(sorted, n, FAR_SHARE),
                      high = quantile(sorted, n, 1.0 - FAR_SHARE);
         const double air = 0.25 * (high - low) + 3.0 * sphere_radius(spheres, 0);

@@ -116,6 +116,18 @@ char *array_format(const char *format, ...)
     return text;
 }
 
+int array_compare_ints(const void *a, const void *b)
+{
+    const int *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
+int array_compare_doubles(const void *a, const void *b)
+{
+    const double *p = a, *q = b;
+    return (*p > *q) - (*p < *q);
+}
+
 size_t array_capacity(size_t capacity, size_t needed)
 {
     const size_t grown = capacity + capacity / 8 + 16;

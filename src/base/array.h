@@ -29,6 +29,10 @@ char *array_string(const char *text);
 /* printf into a new string. */
 char *array_format(const char *format, ...) __attribute__((format(printf, 1, 2)));
 
+/* For qsort(): ints and doubles in ascending order. */
+int array_compare_ints(const void *a, const void *b);
+int array_compare_doubles(const void *a, const void *b);
+
 /* Next capacity for `needed` elements where `capacity` was. */
 size_t array_capacity(size_t capacity, size_t needed);
 

@@ -243,7 +243,8 @@ static void pairs_sort(struct job *job)
         pair->a = a < b ? a : b;
         pair->b = a < b ? b : a;
     }
-    qsort(job->pairs, (size_t)job->n_pairs, sizeof *job->pairs, compare_pairs);
+    if (job->n_pairs > 0)
+        qsort(job->pairs, (size_t)job->n_pairs, sizeof *job->pairs, compare_pairs);
 }
 
 static void material_clear(struct job_material *material)
@@ -291,12 +292,6 @@ static void materials_prune(struct job *job, const bool *used)
     free(index);
 }
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double *p = a, *q = b;
-    return (*p > *q) - (*p < *q);
-}
-
 /* Radii, or radii between size classes. */
 struct radii {
     int n, capacity;
@@ -315,7 +310,7 @@ static void radii_sort(struct radii *radii)
     int n = 0;
     if (radii->n == 0)
         return;
-    qsort(radii->list, (size_t)radii->n, sizeof *radii->list, compare_doubles);
+    qsort(radii->list, (size_t)radii->n, sizeof *radii->list, array_compare_doubles);
     for (int k = 0; k < radii->n; k++)
         if (n == 0 || radii->list[k] > radii->list[n - 1])
             radii->list[n++] = radii->list[k];

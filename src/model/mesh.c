@@ -18,6 +18,7 @@
 
 #include "base/array.h"
 #include "base/report.h"
+#include "model/side.h"
 
 static const double FLAT =
     1e-9; /* a quad's vertices lie in a plane within this part of its size */
@@ -295,46 +296,24 @@ static void keep_used_vertices(struct mesh *mesh, const struct draft *draft)
     free(number);
 }
 
-struct side { /* of a face, on its way to being an edge */
-    int low, high, face, k;
-};
-
-static int compare_sides(const void *a, const void *b)
-{
-    const struct side *p = a, *q = b;
-    if (p->low != q->low)
-        return p->low < q->low ? -1 : 1;
-    if (p->high != q->high)
-        return p->high < q->high ? -1 : 1;
-    if (p->face != q->face)
-        return p->face < q->face ? -1 : 1;
-    return p->k - q->k;
-}
-
 static void find_edges(struct mesh *mesh)
 {
     struct side *sides = array_allocate(4 * (size_t)mesh->n_faces, sizeof *sides);
     int n = 0;
-    for (int f = 0; f < mesh->n_faces; f++) {
-        const struct mesh_face *face = &mesh->faces[f];
-        for (int k = 0; k < face->n; k++) {
-            const int a = face->vertices[k], b = face->vertices[(k + 1) % face->n];
-            sides[n++] = (struct side){a < b ? a : b, a < b ? b : a, f, k};
-        }
-    }
-    qsort(sides, (size_t)n, sizeof *sides, compare_sides);
+    for (int f = 0; f < mesh->n_faces; f++)
+        side_add(sides, &n, f, mesh->faces[f].n, mesh->faces[f].vertices);
+    side_sort(sides, n);
     mesh->edges = array_allocate((size_t)n, sizeof *mesh->edges);
-    for (int s = 0; s < n; s++) {
-        struct mesh_edge *edge = &mesh->edges[mesh->n_edges];
-        const bool same =
-            s > 0 && sides[s].low == sides[s - 1].low && sides[s].high == sides[s - 1].high;
-        if (!same) {
-            mesh->n_edges++;
-            *edge = (struct mesh_edge){{sides[s].low, sides[s].high}, {sides[s].face, -1}, 1};
-        } else if (edge[-1].n_faces++ == 1) {
-            edge[-1].faces[1] = sides[s].face;
-        }
-        mesh->faces[sides[s].face].edges[sides[s].k] = mesh->n_edges - 1;
+    for (int first = 0, end; first < n; first = end) {
+        const struct side *p = &sides[first];
+        end = side_edge_end(sides, first, n);
+        mesh->edges[mesh->n_edges] =
+            (struct mesh_edge){{p->ends[0], p->ends[1]},
+                               {p->polygon, end - first > 1 ? p[1].polygon : -1},
+                               end - first};
+        for (int k = first; k < end; k++)
+            mesh->faces[sides[k].polygon].edges[sides[k].side] = mesh->n_edges;
+        mesh->n_edges++;
     }
     free(sides);
 }

@@ -9,6 +9,7 @@
 #include "job/job.h"
 #include "model/geometry.h"
 #include "model/mesh.h"
+#include "model/side.h"
 #include "model/solid_mesh.h"
 
 struct facet {
@@ -52,41 +53,23 @@ static void take_facets(struct sheet *sheet)
     free(joined);
 }
 
-struct side {
-    int ends[2], facet, side;
-};
-
-static int compare_sides(const void *a, const void *b)
-{
-    const struct side *p = a, *q = b;
-    for (int k = 0; k < 2; k++)
-        if (p->ends[k] != q->ends[k])
-            return p->ends[k] < q->ends[k] ? -1 : 1;
-    if (p->facet != q->facet)
-        return p->facet < q->facet ? -1 : 1;
-    return (p->side > q->side) - (p->side < q->side);
-}
-
 static void find_edges(struct sheet *sheet)
 {
     struct side *sides = array_allocate(4 * (size_t)sheet->n_facets, sizeof *sides);
     int n = 0;
     for (int f = 0; f < sheet->n_facets; f++)
-        for (int k = 0; k < sheet->facets[f].n; k++) {
-            const struct facet *facet = &sheet->facets[f];
-            const int a = facet->corners[k], b = facet->corners[(k + 1) % facet->n];
-            sides[n++] = (struct side){{a < b ? a : b, a < b ? b : a}, f, k};
-        }
-    if (n > 0)
-        qsort(sides, (size_t)n, sizeof *sides, compare_sides);
+        side_add(sides, &n, f, sheet->facets[f].n, sheet->facets[f].corners);
+    side_sort(sides, n);
     sheet->edges = array_allocate((size_t)n, sizeof *sheet->edges);
-    for (int k = 0; k < n; k++) {
-        if (k == 0 || memcmp(sides[k].ends, sides[k - 1].ends, sizeof sides[k].ends) != 0) {
-            sheet->edges[sheet->n_edges++] =
-                (struct edge){.ends = {sides[k].ends[0], sides[k].ends[1]}, .pieces = 1};
-        }
-        sheet->edges[sheet->n_edges - 1].n_facets++;
-        sheet->facets[sides[k].facet].edges[sides[k].side] = sheet->n_edges - 1;
+    for (int first = 0, end; first < n; first = end) {
+        end = side_edge_end(sides, first, n);
+        sheet->edges[sheet->n_edges] =
+            (struct edge){.ends = {sides[first].ends[0], sides[first].ends[1]},
+                          .pieces = 1,
+                          .n_facets = end - first};
+        for (int k = first; k < end; k++)
+            sheet->facets[sides[k].polygon].edges[sides[k].side] = sheet->n_edges;
+        sheet->n_edges++;
     }
     free(sides);
 }

@@ -6,6 +6,7 @@
 #include <string.h>
 
 #include "base/array.h"
+#include "model/side.h"
 #include "model/solid_mesh.h"
 
 /* ---------------------------------------------------------------------------------- places */
@@ -64,13 +65,6 @@ static int count_facets(const struct solid_mesh *mesh, const int *partners)
 
 /* ---------------------------------------------------------------------------------- sheets */
 
-/* A side of a sheet. */
-struct side {
-    int ends[2]; /* ascending */
-    int sheet, side;
-    bool turned; /* goes from the greater to the lesser */
-};
-
 struct draft {
     const struct solid_mesh *mesh;
     int n, *elements; /* sheets, by their elements */
@@ -82,31 +76,14 @@ struct draft {
     bool *flipped; /* is it seen from below in its part, which goes on from sheet to sheet? */
 };
 
-static int compare_sides(const void *a, const void *b)
-{
-    const struct side *p = a, *q = b;
-    for (int k = 0; k < 2; k++)
-        if (p->ends[k] != q->ends[k])
-            return p->ends[k] < q->ends[k] ? -1 : 1;
-    if (p->sheet != q->sheet)
-        return p->sheet < q->sheet ? -1 : 1;
-    return (p->side > q->side) - (p->side < q->side);
-}
-
 static void list_sides(struct draft *draft)
 {
     draft->sides = array_allocate(4 * (size_t)draft->n, sizeof *draft->sides);
     for (int s = 0; s < draft->n; s++) {
         const int *corners = draft->mesh->elements[draft->elements[s]];
-        const int n = solid_mesh_n_corners(corners);
-        for (int k = 0; k < n; k++) {
-            const int a = corners[k], b = corners[(k + 1) % n];
-            draft->sides[draft->n_sides++] =
-                (struct side){{a < b ? a : b, a < b ? b : a}, s, k, a > b};
-        }
+        side_add(draft->sides, &draft->n_sides, s, solid_mesh_n_corners(corners), corners);
     }
-    if (draft->n_sides > 0)
-        qsort(draft->sides, (size_t)draft->n_sides, sizeof *draft->sides, compare_sides);
+    side_sort(draft->sides, draft->n_sides);
 }
 
 /* Two that are alone at an edge go on into each other if their normals hardly differ. */
@@ -116,17 +93,15 @@ static void find_partners(struct draft *draft)
     memset(draft->partner, -1, (size_t)draft->n * sizeof *draft->partner);
     for (int k = 0, end; k < draft->n_sides; k = end) {
         const struct side *p = &draft->sides[k], *q = p + 1;
-        for (end = k + 1; end < draft->n_sides; end++)
-            if (memcmp(draft->sides[end].ends, p->ends, sizeof p->ends) != 0)
-                break;
+        end = side_edge_end(draft->sides, k, draft->n_sides);
         if (end - k != 2)
             continue;
-        const double cosine = vec3_dot(draft->normals[p->sheet], draft->normals[q->sheet]);
+        const double cosine = vec3_dot(draft->normals[p->polygon], draft->normals[q->polygon]);
         if ((p->turned != q->turned ? cosine : -cosine) < SKIN_SMOOTH ||
-            (draft->on[p->sheet] < 0) != (draft->on[q->sheet] < 0))
+            (draft->on[p->polygon] < 0) != (draft->on[q->polygon] < 0))
             continue;
-        draft->partner[p->sheet][p->side] = 4 * q->sheet + q->side;
-        draft->partner[q->sheet][q->side] = 4 * p->sheet + p->side;
+        draft->partner[p->polygon][p->side] = 4 * q->polygon + q->side;
+        draft->partner[q->polygon][q->side] = 4 * p->polygon + p->side;
     }
 }
 

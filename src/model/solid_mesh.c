@@ -210,12 +210,6 @@ void solid_mesh_list_add(struct solid_mesh_list *list, int item)
     list->items[list->n++] = item;
 }
 
-static int compare_ints(const void *a, const void *b)
-{
-    const int *p = a, *q = b;
-    return (*p > *q) - (*p < *q);
-}
-
 /* The list in order, everything once. */
 static int *sorted_list(const struct solid_mesh_list *list, int *n)
 {
@@ -224,7 +218,7 @@ static int *sorted_list(const struct solid_mesh_list *list, int *n)
     if (list->n == 0)
         return items;
     memcpy(items, list->items, (size_t)list->n * sizeof *items);
-    qsort(items, (size_t)list->n, sizeof *items, compare_ints);
+    qsort(items, (size_t)list->n, sizeof *items, array_compare_ints);
     for (int k = 0; k < list->n; k++)
         if (*n == 0 || items[k] > items[*n - 1])
             items[(*n)++] = items[k];
@@ -539,7 +533,7 @@ static void add_to_sets(struct solid_mesh *mesh, int element)
         bool all = true;
         for (int c = 0; c < solid_mesh_n_corners(corners); c++)
             all = all && bsearch(&corners[c], set->nodes, (size_t)set->n_nodes,
-                                 sizeof *set->nodes, compare_ints) != NULL;
+                                 sizeof *set->nodes, array_compare_ints) != NULL;
         if (all)
             append(&set->elements, &set->n_elements, element);
     }

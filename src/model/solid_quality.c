@@ -12,6 +12,7 @@
 #include "base/groups.h"
 #include "base/report.h"
 #include "job/job.h"
+#include "model/side.h"
 #include "model/solid_mesh.h"
 
 /* ------------------------------------------------------------------------------- elements */
@@ -379,12 +380,6 @@ struct known {
     int nodes[8], element;
 };
 
-static int compare_ints(const void *a, const void *b)
-{
-    const int *p = a, *q = b;
-    return (*p > *q) - (*p < *q);
-}
-
 static int compare_nodes(const struct known *p, const struct known *q)
 {
     for (int k = 0; k < 8; k++)
@@ -407,7 +402,7 @@ static void find_doubles(struct finder *finder)
     char name[TEXT];
     for (int e = 0; e < mesh->n_elements; e++) {
         memcpy(known[e].nodes, mesh->elements[e], sizeof known[e].nodes);
-        qsort(known[e].nodes, 8, sizeof *known[e].nodes, compare_ints);
+        qsort(known[e].nodes, 8, sizeof *known[e].nodes, array_compare_ints);
         known[e].element = e;
     }
     qsort(known, (size_t)mesh->n_elements, sizeof *known, compare_known);
@@ -423,45 +418,28 @@ static void find_doubles(struct finder *finder)
     free(known);
 }
 
-/* An edge of a side on the surface. */
-struct edge {
-    int a, b; /* a < b */
-    struct solid_mesh_side side;
+/* Sides of the surface: polygons of the edges at which they meet. */
+struct outside {
+    struct solid_mesh_side *sides;
+    int n_edges; /* one for each side along it */
+    struct side *edges;
 };
 
-static int compare_edges(const void *a, const void *b)
+static struct outside find_outside(const struct solid_mesh *mesh)
 {
-    const struct edge *p = a, *q = b;
-    if (p->a != q->a)
-        return p->a < q->a ? -1 : 1;
-    if (p->b != q->b)
-        return p->b < q->b ? -1 : 1;
-    if (p->side.element != q->side.element)
-        return p->side.element < q->side.element ? -1 : 1;
-    return (p->side.side > q->side.side) - (p->side.side < q->side.side);
-}
-
-static struct edge *surface_edges(const struct solid_mesh *mesh, int *n)
-{
-    struct solid_mesh_side *sides;
-    const int n_sides = solid_mesh_surface(mesh, &sides);
-    struct edge *edges = array_allocate(4 * (size_t)n_sides, sizeof *edges);
-    *n = 0;
-    for (int k = 0; k < n_sides; k++) {
+    struct outside outside = {.n_edges = 0};
+    const int n = solid_mesh_surface(mesh, &outside.sides);
+    outside.edges = array_allocate(4 * (size_t)n, sizeof *outside.edges);
+    for (int k = 0; k < n; k++) {
+        const struct solid_mesh_side at = outside.sides[k];
         int nodes[4];
-        if (solid_mesh_is_sheet(mesh->elements[sides[k].element]))
+        if (solid_mesh_is_sheet(mesh->elements[at.element]))
             continue; /* may end, and meet several */
-        const int m =
-            solid_mesh_side_nodes(mesh->elements[sides[k].element], sides[k].side, nodes);
-        for (int c = 0; c < m; c++) {
-            const int p = nodes[c], q = nodes[(c + 1) % m];
-            edges[(*n)++] = (struct edge){p < q ? p : q, p < q ? q : p, sides[k]};
-        }
+        const int m = solid_mesh_side_nodes(mesh->elements[at.element], at.side, nodes);
+        side_add(outside.edges, &outside.n_edges, k, m, nodes);
     }
-    free(sides);
-    if (*n > 0)
-        qsort(edges, (size_t)*n, sizeof *edges, compare_edges);
-    return edges;
+    side_sort(outside.edges, outside.n_edges);
+    return outside;
 }
 
 /* Do a quad and a triangle of the surface lie on each other? */
@@ -490,50 +468,46 @@ static void find_shared_sides(struct finder *finder)
     free(partners);
 }
 
-/* Where the sides of one edge begin that come after those from `first`. */
-static int next_edge(const struct edge *edges, int first, int n)
-{
-    int end = first + 1;
-    while (end < n && edges[end].a == edges[first].a && edges[end].b == edges[first].b)
-        end++;
-    return end;
-}
-
-static void find_seams(struct finder *finder, const struct edge *edges, int n)
+static void find_seams(struct finder *finder, const struct outside *outside)
 {
     const struct solid_mesh *mesh = finder->mesh;
+    const struct side *edges = outside->edges;
     enum { MOST = 16 }; /* sides of an edge that are looked at */
     char name[TEXT];
-    for (int first = 0, end; first < n; first = end) {
-        end = next_edge(edges, first, n);
+    for (int first = 0, end; first < outside->n_edges; first = end) {
+        end = side_edge_end(edges, first, outside->n_edges);
         for (int k = first + 1; k < end && k < first + MOST; k++)
             for (int j = first; j < k; j++)
-                if (is_seam(mesh, edges[j].side, edges[k].side))
+                if (is_seam(mesh, outside->sides[edges[j].polygon],
+                            outside->sides[edges[k].polygon]))
                     find(finder,
                          "%s meets another in a part of a side, hexahedron and tetrahedron, "
                          "which leaves a gap; elements of one kind there are expected",
-                         element_name(finder, edges[k].side.element, name));
+                         element_name(finder, outside->sides[edges[k].polygon].element, name));
     }
     end_kind(finder, "edges of sides where hexahedra meet tetrahedra");
 }
 
 static void find_bad_edges(struct finder *finder)
 {
-    int n;
-    struct edge *edges = surface_edges(finder->mesh, &n);
+    const struct outside outside = find_outside(finder->mesh);
+    const struct side *edges = outside.edges;
     const int n_before = finder->mistakes->n;
     char name[TEXT];
-    find_seams(finder, edges, n);
-    for (int first = 0, end; first < n && finder->mistakes->n == n_before; first = end) {
-        end = next_edge(edges, first, n);
+    find_seams(finder, &outside);
+    for (int first = 0, end; first < outside.n_edges && finder->mistakes->n == n_before;
+         first = end) {
+        end = side_edge_end(edges, first, outside.n_edges);
         if (end - first != 2)
             find(finder,
                  "%s is one of %d sides of the surface, which meets itself there; elements "
                  "joined in whole sides are expected",
-                 edge_name(finder, edges[first].a, edges[first].b, name), end - first);
+                 edge_name(finder, edges[first].ends[0], edges[first].ends[1], name),
+                 end - first);
     }
     end_kind(finder, "edges where the surface meets itself");
-    free(edges);
+    free(outside.sides);
+    free(outside.edges);
 }
 
 void solid_quality_check(const struct solid_mesh *mesh, const char *name, const char *file,

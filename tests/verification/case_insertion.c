@@ -26,17 +26,11 @@ static const char MATERIALS[] =
     "    - {between: [stone, gravel], friction: 0.4, restitution: 0.6}\n"
     "    - {between: [gravel, gravel], friction: 0.4, restitution: 0.6}\n";
 
-static int compare_doubles(const void *a, const void *b)
-{
-    const double *p = a, *q = b;
-    return (*p > *q) - (*p < *q);
-}
-
 /* Kolmogorov's statistic times the square root of n, of shares that are to be even. */
 static double statistic(int n, double *shares)
 {
     double most = 0.0;
-    qsort(shares, (size_t)n, sizeof *shares, compare_doubles);
+    qsort(shares, (size_t)n, sizeof *shares, array_compare_doubles);
     for (int k = 0; k < n; k++) {
         const double above = (k + 1.0) / n - shares[k], below = shares[k] - (double)k / n;
         most = above > most ? above : most;
