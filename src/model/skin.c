@@ -240,10 +240,10 @@ static void add_facet(struct skin *skin, int a, int b, int c, int d)
 }
 
 /* Vertices below the sheet's corners: those of a solid's nodes where it lies on one. */
-static void find_below(const struct skin *skin, const struct draft *draft, int s,
+static void find_below(const struct skin *skin, const struct draft *draft, int s, int n,
                        const int rings[4], const int *plain, int below[4])
 {
-    for (int k = 0; k < 4 && rings[k] >= 0; k++)
+    for (int k = 0; k < n; k++)
         below[k] = draft->on[s] < 0 ? skin_above(skin, rings[k]) + 1
                                     : plain[skin->sheets[s].corners[k]] - 1;
 }
@@ -262,7 +262,7 @@ static void add_sheet(struct skin *skin, const struct draft *draft, int s, const
     int above[4], below[4];
     for (int k = 0; k < n; k++)
         above[k] = skin_above(skin, rings[k]);
-    find_below(skin, draft, s, rings, plain, below);
+    find_below(skin, draft, s, n, rings, plain, below);
     for (int k = 2; k < n; k++) { /* triangles: cheaper than four about a mean point */
         add_facet(skin, above[0], above[k - 1], above[k], -1);
         if (draft->on[s] < 0)

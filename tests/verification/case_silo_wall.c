@@ -4,9 +4,12 @@
  */
 /* long */
 #include <math.h>
+#include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include "base/array.h"
 #include "base/report.h"
@@ -29,9 +32,15 @@ struct silo {
     struct slice slices[SLICES];
 };
 
-static void shell(const char *command)
+static void shell(char *command)
 {
-    CHECK(system(command) == 0, "'%s' does not end well", command);
+    char name[] = "sh", option[] = "-c";
+    char *const words[] = {name, option, command, NULL};
+    pid_t child;
+    int status = 0;
+    CHECK(posix_spawnp(&child, name, NULL, NULL, words, environ) == 0 &&
+              waitpid(child, &status, 0) == child && status == 0,
+          "'%s' does not end well", command);
 }
 
 static FILE *open_table(const char *folder, const char *name)
