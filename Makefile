@@ -238,6 +238,8 @@ $(unit_tests): $(BUILD)/tests/%: $(BUILD)/tests/unit/%.o $(flavour_objects) $(li
 	@mkdir -p $(@D)
 	$(call say,link,$@)$(CC) $(CFLAGS) $(LDFLAGS) -o $@ $(filter %.o,$^) $(library) $(LDLIBS)
 
+# It reads tables that tools write.
+$(BUILD)/tests/case_silo_wall: $(tool_shared)
 $(verification_cases): $(BUILD)/tests/%: $(BUILD)/tests/verification/%.o $(case_shared) \
     $(flavour_objects) $(library)
 	@mkdir -p $(@D)

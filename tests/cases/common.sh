@@ -72,6 +72,14 @@ columns()
     awk -F, "$@" 'NR == 1 { for (i = 1; i <= NF; i++) at[$i] = i; next }'" $program" series.csv
 }
 
+# balance RUN: how far its balance of energy is off at the end, over all that was turned over.
+balance()
+{
+    series "$1"
+    columns '{ turned = 0; for (name in at) if (name ~ /^(kinetic|elastic|dissipated|work)/) turned += $at[name] < 0 ? -$at[name] : $at[name]
+               off = $at["balance_J"] / turned } END { print off < 0 ? -off : off }'
+}
+
 # near WHAT VALUE EXPECTED SHARE: it is, within that share of it.
 near()
 {

@@ -7,10 +7,10 @@
 #include <spawn.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "../../postproc/sheet.h"
 #include "base/array.h"
 #include "base/report.h"
 #include "verify.h"
@@ -43,65 +43,56 @@ static void shell(char *command)
           "'%s' does not end well", command);
 }
 
-static FILE *open_table(const char *folder, const char *name)
+/* A number of a table, of the first row where the first column is at least `from`. */
+static double find(const struct sheet *table, const char *first, double from, const char *name)
+{
+    const int key = sheet_column(table, first), column = sheet_column(table, name);
+    CHECK(key >= 0 && column >= 0, "a table is without '%s' or '%s'", first, name);
+    for (int row = 0; row < table->n_cells; row += table->n_columns)
+        if (strtod(table->cells[row + key], NULL) >= from)
+            return strtod(table->cells[row + column], NULL);
+    CHECK(false, "a table ends before %s is %g", first, from);
+    return NAN;
+}
+
+static void read_table(struct sheet *table, const char *folder, const char *name)
 {
     char *path = array_format("%s/%s", folder, name);
-    FILE *file = fopen(path, "r");
-    CHECK(file != NULL, "there is no %s", path);
+    sheet_init(table);
+    CHECK(sheet_read_csv(table, path) == 0, "%s cannot be read", path);
     free(path);
-    return file;
 }
 
-/* Where a column stands in the line that names them. */
-static int column(const char *head, const char *name)
+static double at_rest(const struct sheet *series, const char *name)
 {
-    int at = 0;
-    const size_t length = strlen(name);
-    for (const char *c = head; c != NULL; c = strchr(c, ','), c = c == NULL ? c : c + 1, at++)
-        if (strncmp(c, name, length) == 0 && strchr(",\n", c[length]) != NULL)
-            return at;
-    CHECK(false, "no column '%s' in %s", name, head);
-    return -1;
+    return find(series, "time_s", 1.979, name);
 }
-
-static double cell(const char *line, int at)
-{
-    for (; at > 0; at--)
-        line = strchr(line, ',') + 1;
-    return strtod(line, NULL);
-}
-
-enum { LINE = 8192 };
 
 static void read_series(const char *folder, struct silo *silo)
 {
-    char head[LINE], line[LINE];
-    FILE *file = open_table(folder, "series.csv");
-    CHECK(fgets(head, LINE, file) != NULL, "no series");
-    while (fgets(line, LINE, file) != NULL && cell(line, column(head, "time_s")) < 1.979)
-        ;
-    const double wall = cell(line, column(head, "wall.force_z_N"));
-    silo->borne = -wall - cell(line, column(head, "floor.force_z_N")) -
-                  cell(line, column(head, "above.force_z_N"));
-    silo->foot = cell(line, column(head, "wall.base.reaction_z_N")) + wall;
-    silo->density = cell(line, column(head, "middle.mass_kg")) / (M_PI * INSIDE * INSIDE);
-    fclose(file);
+    struct sheet series;
+    read_table(&series, folder, "series.csv");
+    const double wall = at_rest(&series, "wall.force_z_N");
+    silo->borne =
+        -wall - at_rest(&series, "floor.force_z_N") - at_rest(&series, "above.force_z_N");
+    silo->foot = at_rest(&series, "wall.base.reaction_z_N") + wall;
+    silo->density = at_rest(&series, "middle.mass_kg") / (M_PI * INSIDE * INSIDE);
+    sheet_clear(&series);
 }
 
 static void read_slices(const char *folder, struct slice slices[SLICES])
 {
-    char head[LINE], line[LINE];
-    FILE *file = open_table(folder, "wall.csv");
-    CHECK(fgets(head, LINE, file) != NULL, "no slices");
+    struct sheet wall;
+    read_table(&wall, folder, "wall.csv");
     for (int k = 0; k < SLICES; k++) {
-        CHECK(fgets(line, LINE, file) != NULL, "a slice is missing");
-        slices[k] = (struct slice){cell(line, column(head, "depth_m")),
-                                   cell(line, column(head, "stress_xx_Pa")) +
-                                       cell(line, column(head, "stress_yy_Pa")),
-                                   cell(line, column(head, "stress_zz_Pa")),
-                                   -cell(line, column(head, "contact_pressure_Pa"))};
+        const double depth = k > 0 ? slices[k - 1].depth + 1e-6 : 0.0;
+        slices[k] = (struct slice){find(&wall, "depth_m", depth, "depth_m"),
+                                   find(&wall, "depth_m", depth, "stress_xx_Pa") +
+                                       find(&wall, "depth_m", depth, "stress_yy_Pa"),
+                                   find(&wall, "depth_m", depth, "stress_zz_Pa"),
+                                   -find(&wall, "depth_m", depth, "contact_pressure_Pa")};
     }
-    fclose(file);
+    sheet_clear(&wall);
 }
 
 /* Runs the job; before MPI starts here, which programs that it starts would not like. */
